@@ -1,0 +1,13 @@
+# flowrest_test(NAME SOURCES ... LIBRARIES ... [TIMEOUT seconds]): one GoogleTest binary; every TEST in it becomes a ctest.
+function(flowrest_test name)
+  if(NOT FLOWREST_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main GTest::gmock flowrest_warnings)
+  gtest_discover_tests(${name} TEST_PREFIX ${name}. PROPERTIES TIMEOUT ${ARG_TIMEOUT} DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace flowrest::foam {
+
+/// Adds `flowrest foam`.
+void add_commands(CLI::App&);
+
+}  // namespace flowrest::foam

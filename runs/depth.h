@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+/// Depth and the measures made of it, defined once for every solver: concrete volume per plan area.
+namespace flowrest::runs {
+
+/// Depth of a slump over equal rings of width `spacing`: ring i covers [i, i + 1) * spacing, its centre at (i + 1/2).
+struct RadialDepth {
+  double spacing = 0.0;       ///< m
+  std::vector<double> depth;  ///< m
+  std::vector<double> centres() const;
+  /// Integral of depth over the plan area, m3.
+  double volume() const;
+};
+
+/// Accumulates volumes (of the whole body) into rings. A volume at radius r is shared between the two nearest ring
+/// centres in proportion (a tent of one ring's width), so that the sum is the volume whatever the sampling.
+class RadialDepthAccumulator {
+ public:
+  RadialDepthAccumulator(double spacing, double largest_radius);
+  void add(double radius, double volume);
+  RadialDepth depth() const;
+
+ private:
+  double spacing_;
+  std::vector<double> volume_;
+};
+
+/// Twice the radius at which the depth falls through `threshold` for the last time going outwards, interpolated linearly
+/// between ring centres; 0 where the depth is nowhere above it. m
+double spread(std::span<const double> radius, std::span<const double> depth, double threshold = 0.003);
+
+/// Depth at the centre: the parabola in r^2 through the innermost two rings taken at r = 0. m
+double centre_depth(std::span<const double> radius, std::span<const double> depth);
+
+}  // namespace flowrest::runs

@@ -1,0 +1,199 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// The scene: what is simulated, read from TOML, checked and resolved once for every solver. SI units throughout.
+namespace flowrest::scenes {
+
+enum class Kind { slump, duct };
+enum class Dimension { axisymmetric, plane, quarter, full };
+enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
+enum class Scheme { quadratic_apic, linear_flip, paper };
+enum class Precision { double_precision, single_precision };
+enum class Seeding { lattice, jittered };
+/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (limit enforced).
+enum class FluidUpdate { implicit_update, explicit_update };
+enum class Wall { no_slip, slip };
+
+/// The names used in scenes, on the command line and in run.json ("elasto-viscoplastic", "quadratic-apic", ...).
+std::string to_string(Kind);
+std::string to_string(Dimension);
+std::string to_string(Model);
+std::string to_string(Scheme);
+std::string to_string(Precision);
+std::string to_string(Seeding);
+std::string to_string(FluidUpdate);
+std::string to_string(Wall);
+
+/// A cone of material released on a plate; the axis of symmetry is vertical.
+struct SlumpGeometry {
+  double cone_height = 0.0;         ///< m
+  double cone_radius_top = 0.0;     ///< m
+  double cone_radius_bottom = 0.0;  ///< m
+  double domain_radius = 0.0;       ///< m, bounds the OpenFOAM mesh; material that reaches it ends a run
+  double domain_height = 0.0;       ///< m
+  /// Volume of the cone (a frustum), m3.
+  double volume() const;
+};
+
+/// A layer between two parallel plates, periodic along x and driven along x.
+struct DuctGeometry {
+  double height = 0.0;  ///< m, between the plates
+};
+
+struct Geometry {
+  Dimension dimension = Dimension::axisymmetric;
+  std::variant<SlumpGeometry, DuctGeometry> shape;
+};
+
+struct Material {
+  Model model = Model::elasto_viscoplastic;
+  double density = 0.0;            ///< kg/m3, at rest and without pressure
+  double yield_stress = 0.0;       ///< Pa, tau0
+  double plastic_viscosity = 0.0;  ///< Pa s, eta
+  double youngs_modulus = 0.0;     ///< Pa, E; resolved from bulk_modulus where that is given instead
+  double poisson_ratio = 0.0;      ///< nu
+  double equation_of_state_exponent = 7.0;    ///< gamma of Yu et al. 2026, Eq. 6
+  std::optional<double> regularisation_time;  ///< s, m of Papanastasiou
+  /// 1/s, where the bi-viscous law yields; resolved to 1/m where only the regularisation time is given.
+  std::optional<double> critical_shear_rate;
+
+  double bulk_modulus() const;        ///< K0 = E / (3 (1 - 2 nu)), Pa
+  double shear_modulus() const;       ///< G0 = E / (2 (1 + nu)), Pa
+  double longitudinal_speed() const;  ///< sqrt((K0 + 4 G0 / 3) / density), m/s
+};
+
+/// Roussel's structural build-up and breakdown, Yu et al. 2026, Eqs. 11 and 12.
+struct Thixotropy {
+  double flocculation_rate = 0.0;          ///< A_thix, Pa/s
+  double deflocculation_coefficient = 0.0; ///< alpha
+  double initial_flocculation = 0.0;       ///< lambda0
+};
+
+struct Forces {
+  double gravity = 0.0;  ///< m/s2, downwards
+  /// (from time s, N/m3) along x, ascending in time; empty where nothing but gravity drives.
+  std::vector<std::pair<double, double>> body_force;
+  double body_force_at(double time) const;
+};
+
+struct Time {
+  double end = 0.0;           ///< s
+  bool stop_at_rest = true;   ///< EVP only: a fluid is never at rest
+  double rest_bound = 0.006;  ///< bound on the relative growth of the spread still to come
+};
+
+/// Simulated seconds between outputs.
+struct Output {
+  double history_interval = 0.05;
+  double profile_interval = 0.25;
+  double snapshot_interval = 1.0;
+  double checkpoint_interval = 5.0;
+};
+
+struct Mpm {
+  Scheme scheme = Scheme::quadratic_apic;
+  double cell = 0.0;  ///< m
+  /// Particles per cell: along each axis (dimension of the scene long). A single number n in the scene is split evenly
+  /// and must be a perfect power; an array gives each axis.
+  std::vector<int> particles_per_cell;
+  double cfl = 0.75;                 ///< Courant number of the acoustic step
+  std::optional<double> time_step;   ///< s, fixed instead of CFL-controlled; `paper` sets 5e-4
+  bool allow_unstable_step = false;  ///< lets time_step or cfl pass the stable limit
+  Precision precision = Precision::double_precision;
+  int threads = 0;  ///< 0: all cores
+  Seeding seeding = Seeding::lattice;
+  std::uint64_t seed = 1;  ///< of the jitter
+  FluidUpdate fluid_update = FluidUpdate::implicit_update;
+  double flip_relaxation_time = 0.05;  ///< s, of `linear-flip`
+};
+
+struct Foam {
+  double cell = 0.0;                     ///< m
+  double max_courant = 0.25;             ///< bound on the Courant number of flow and interface
+  std::optional<double> max_time_step;   ///< s; default cell^2 density / plastic_viscosity
+  double air_density = 1.0;              ///< kg/m3
+  double air_kinematic_viscosity = 1e-2; ///< m2/s, tames air jets at no cost in spread
+  double wedge_angle = 5.0;              ///< degrees, the whole wedge
+};
+
+/// Which runs `flowrest run` makes of this scene.
+struct Runs {
+  std::vector<Model> mpm;
+  std::vector<Model> foam;
+  bool exact = false;
+};
+
+struct Scene {
+  std::string name;            ///< file name without extension
+  std::filesystem::path path;  ///< the file it was read from
+  std::string source;          ///< the file's text, as read
+  std::string title;
+  Kind kind = Kind::slump;
+  Runs runs;
+  Geometry geometry;
+  Material material;
+  std::optional<Thixotropy> thixotropy;
+  Wall base = Wall::no_slip;
+  Forces forces;
+  Time time;
+  Output output;
+  Mpm mpm;
+  Foam foam;
+
+  const SlumpGeometry& slump() const { return std::get<SlumpGeometry>(geometry.shape); }
+  const DuctGeometry& duct() const { return std::get<DuctGeometry>(geometry.shape); }
+  /// Spatial dimension of the computation: 2 for axisymmetric and plane, 3 for quarter and full.
+  int spatial_dimension() const {
+    return geometry.dimension == Dimension::axisymmetric || geometry.dimension == Dimension::plane ? 2 : 3;
+  }
+};
+
+/// A scene that cannot be used. what() holds one line per fault: "file:line:column: what is wrong; what is allowed".
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the command line lays over a scene.
+struct Overrides {
+  std::vector<std::string> set;  ///< "material.yield_stress=100": TOML values; a word may stand without quotes
+  std::optional<Model> model;    ///< --model
+};
+
+/// Reads, resolves and checks a scene. `scene` is a path or the name of a file in the scenes folder.
+/// @throws SceneError naming every fault found, never only the first.
+Scene load_scene(const std::string& scene, const Overrides& overrides = {});
+
+/// As load_scene, of a text held in memory; `path` only names it in messages.
+Scene parse_scene(const std::string& text, const std::filesystem::path& path, const Overrides& overrides = {});
+
+/// The resolved settings as TOML: parse_scene of it gives the same scene.
+std::string resolved_toml(const Scene&);
+
+/// The resolved settings as JSON text with the same keys.
+std::string resolved_json(const Scene&);
+
+struct SceneSummary {
+  std::string name;
+  std::string title;
+  std::string error;  ///< the first fault, where the scene cannot be read
+};
+/// Every scene in the scenes folder, by name.
+std::vector<SceneSummary> list_scenes();
+
+/// FLOWREST_SCENES where set, else the source tree's scenes folder.
+std::filesystem::path scenes_folder();
+
+/// @throws SceneError naming the allowed names and the nearest one.
+Model model_from_name(const std::string&);
+
+}  // namespace flowrest::scenes
