@@ -6,7 +6,8 @@
 /// Depth and the measures made of it, defined once for every solver: concrete volume per plan area.
 namespace flowrest::runs {
 
-/// Depth of a slump over equal rings of width `spacing`: ring i covers [i, i + 1) * spacing, its centre at (i + 1/2).
+/// Depth of a slump over equal rings of width `spacing`: ring i covers [i, i + 1) * spacing, its centre at (i
+/// + 1/2).
 struct RadialDepth {
   double spacing = 0.0;       ///< m
   std::vector<double> depth;  ///< m
@@ -15,8 +16,10 @@ struct RadialDepth {
   double volume() const;
 };
 
-/// Accumulates volumes (of the whole body) into rings. A volume at radius r is shared between the two nearest ring
-/// centres in proportion (a tent of one ring's width), so that the sum is the volume whatever the sampling.
+/// Accumulates volumes (of the whole body) into rings. A volume at radius r is shared between the two nearest
+/// ring centres (nearly a tent of one ring's width, corrected so that a uniform layer is uniform up to the
+/// axis), so that the sum is the volume whatever the sampling. What lies beyond the last ring's centre counts
+/// to the last ring.
 class RadialDepthAccumulator {
  public:
   RadialDepthAccumulator(double spacing, double largest_radius);
@@ -28,8 +31,8 @@ class RadialDepthAccumulator {
   std::vector<double> volume_;
 };
 
-/// Twice the radius at which the depth falls through `threshold` for the last time going outwards, interpolated linearly
-/// between ring centres; 0 where the depth is nowhere above it. m
+/// Twice the radius at which the depth falls through `threshold` for the last time going outwards,
+/// interpolated linearly between ring centres; 0 where the depth is nowhere above it. m
 double spread(std::span<const double> radius, std::span<const double> depth, double threshold = 0.003);
 
 /// Depth at the centre: the parabola in r^2 through the innermost two rings taken at r = 0. m

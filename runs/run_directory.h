@@ -37,20 +37,25 @@ class MissingProgram : public std::runtime_error {
 enum class Status { running, at_rest, end_time, interrupted, failed };
 std::string to_string(Status);
 
-/// Writes a run directory. CSV rows are appended and flushed as they come, so an interrupted run is readable; run.json is
-/// replaced atomically. Numbers are written with 17 significant digits.
+/// Replaces a file atomically: a reader sees the old text or the new one, never a part.
+/// @throws RunError where it cannot be written.
+void write_atomically(const std::filesystem::path&, const std::string& text);
+
+/// Writes a run directory. CSV rows are appended and flushed as they come, so an interrupted run is readable;
+/// run.json is replaced atomically. Numbers are written with 17 significant digits.
 class RunWriter {
  public:
-  /// Creates `directory` and writes a first run.json with status "running". `solver` is "mpm", "foam" or "exact".
-  /// @throws RunError where the directory exists and is neither empty nor a run of flowrest (run.json marks one). An
-  /// earlier run in it is removed first (only files a run leaves).
+  /// Creates `directory` and writes a first run.json with status "running". `solver` is "mpm", "foam" or
+  /// "exact".
+  /// @throws RunError where the directory exists and is neither empty nor a run of flowrest (run.json marks
+  /// one). An earlier run in it is removed first (only files a run leaves).
   RunWriter(const std::filesystem::path& directory, const scenes::Scene&, const std::string& solver);
 
   /// Opens a run to go on with: history.csv and profiles.csv are cut back to rows with time_s <= `time`.
   static RunWriter resume(const std::filesystem::path& directory, const scenes::Scene&, double time);
 
-  /// Names the columns of history.csv; the first is time_s. Call once, before the first row (not on a resumed run, where
-  /// the same columns are checked against the file's).
+  /// Names the columns of history.csv; the first is time_s. Call once, before the first row (not on a resumed
+  /// run, where the same columns are checked against the file's).
   void history_columns(const std::vector<std::string>& names);
   void history(std::span<const double> row);
 
@@ -84,8 +89,10 @@ struct Table {
   const std::vector<double>& at(const std::string& name) const;
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
+/// A last line that does not end in a newline was cut off by an interruption and is left out, unless
+/// `complete` says that whoever wrote the file came to the end of it.
 /// @throws RunError with file:line of the first malformed row.
-Table read_csv(const std::filesystem::path&);
+Table read_csv(const std::filesystem::path&, bool complete = false);
 
 struct Profile {
   double time = 0.0;               ///< s
@@ -99,9 +106,13 @@ struct Run {
   nlohmann::ordered_json info;
   Table history;
   std::vector<Profile> profiles;  ///< ascending in time
-  std::string label() const;      ///< e.g. "MPM elasto-viscoplastic", made unique by the comparison where needed
+  /// run.json's `label` where it has one, else solver and model: "MPM elasto-viscoplastic"; made unique by
+  /// the comparison where needed.
+  std::string label() const;
+  Status status() const;
 };
-/// @throws RunError where something is missing or malformed; an interrupted or failed run reads as far as it came.
+/// @throws RunError where something is missing or malformed; an interrupted or failed run reads as far as it
+/// came. Either CSV file may be missing (measured data need not have both), but a finished run must have one.
 Run read_run(const std::filesystem::path&);
 
 /// Provenance keys every run.json carries: versions, git hash, compiler, CPU model, cores.

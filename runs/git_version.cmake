@@ -1,0 +1,25 @@
+# Writes HEADER with the commit of SOURCE and whether tracked files differ from it. Without git or a repository the hash
+# is "unknown". No lock is taken, so that a build never disturbs a git command running beside it.
+set(hash "unknown")
+set(dirty "false")
+find_program(GIT git)
+if(GIT)
+  execute_process(COMMAND ${GIT} rev-parse HEAD WORKING_DIRECTORY ${SOURCE}
+    OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(hash "${answer}")
+    execute_process(COMMAND ${GIT} --no-optional-locks status --porcelain --untracked-files=no
+      WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(changes)
+      set(dirty "true")
+    endif()
+  endif()
+endif()
+set(text "#pragma once\n#define FLOWREST_GIT_HASH \"${hash}\"\n#define FLOWREST_GIT_DIRTY ${dirty}\n")
+set(previous "")
+if(EXISTS ${HEADER})
+  file(READ ${HEADER} previous)
+endif()
+if(NOT previous STREQUAL text)
+  file(WRITE ${HEADER} "${text}")
+endif()
