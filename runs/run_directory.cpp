@@ -293,8 +293,12 @@ void RunWriter::history(std::span<const double> row) {
     throw std::invalid_argument(
         fmt::format("{} numbers for {} columns", row.size(), history_columns_.size()));
   std::string line;
-  for (const double value : row) line += (line.empty() ? "" : ",") + number(value);
-  append(history_, directory_ / "history.csv", line + '\n');
+  for (const double value : row) {
+    if (!line.empty()) line += ',';
+    line += number(value);
+  }
+  line += '\n';
+  append(history_, directory_ / "history.csv", line);
 }
 
 void RunWriter::profile(double time, std::span<const double> coordinate, std::span<const double> value) {

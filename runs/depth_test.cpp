@@ -1,0 +1,104 @@
+#include "runs/depth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+using namespace flowrest::runs;
+
+namespace {
+
+/// Depth of a paraboloid h0 (1 - r^2/R^2), spread into rings by `samples` thin shells of equal width.
+RadialDepth sampled_paraboloid(double spacing, double centre, double radius, int samples) {
+  RadialDepthAccumulator rings(spacing, 2.0 * radius);
+  for (int i = 0; i < samples; ++i) {
+    const double width = radius / samples;
+    const double r = (i + 0.5) * width;
+    rings.add(r, 2.0 * std::numbers::pi * r * width * centre * (1.0 - r * r / (radius * radius)));
+  }
+  return rings.depth();
+}
+
+}  // namespace
+
+TEST(RadialDepth, KeepsTheVolumeWhateverTheSampling) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> radius(0.0, 0.5), volume(0.0, 1e-6);
+  RadialDepthAccumulator rings(0.01, 0.3);  // a part of the volumes lies beyond the last ring
+  double total = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    const double v = volume(random);
+    rings.add(radius(random), v);
+    total += v;
+  }
+  EXPECT_NEAR(rings.depth().volume(), total, 1e-12 * total);
+}
+
+TEST(RadialDepth, AUniformLayerIsUniformUpToTheAxis) {
+  const double spacing = 0.01, height = 0.04, radius = 0.2;
+  RadialDepthAccumulator rings(spacing, 0.3);
+  const int samples = 200000;
+  for (int i = 0; i < samples; ++i) {
+    const double width = radius / samples;
+    const double r = (i + 0.5) * width;
+    rings.add(r, 2.0 * std::numbers::pi * r * width * height);
+  }
+  const auto depth = rings.depth().depth;
+  for (std::size_t ring = 0; ring < 19; ++ring)
+    EXPECT_NEAR(depth[ring], height, 1e-6 * height) << "ring " << ring;
+}
+
+TEST(RadialDepth, RefusesWhatIsNotARadius) {
+  RadialDepthAccumulator rings(0.01, 0.3);
+  EXPECT_THROW(rings.add(-0.1, 1.0), std::invalid_argument);
+  EXPECT_THROW(rings.add(std::numeric_limits<double>::quiet_NaN(), 1.0), std::invalid_argument);
+  EXPECT_THROW(RadialDepthAccumulator(0.0, 0.3), std::invalid_argument);
+  EXPECT_THROW(RadialDepthAccumulator(0.01, std::numeric_limits<double>::infinity()), std::invalid_argument);
+}
+
+TEST(Spread, OfAnAnalyticProfileAtThreeThresholds) {
+  // h = 0.036 sqrt(1 - r/0.3): falls through t at r = 0.3 (1 - (t/0.036)^2).
+  const double spacing = 1e-4;
+  std::vector<double> radius, depth;
+  for (double r = spacing / 2; r < 0.4; r += spacing) {
+    radius.push_back(r);
+    depth.push_back(r < 0.3 ? 0.036 * std::sqrt(1.0 - r / 0.3) : 0.0);
+  }
+  for (const double threshold : {0.0015, 0.003, 0.006}) {
+    const double exact = 0.6 * (1.0 - std::pow(threshold / 0.036, 2));
+    EXPECT_NEAR(spread(radius, depth, threshold), exact, 1e-4) << "threshold " << threshold;
+  }
+}
+
+TEST(Spread, IsLinearBetweenCentresAndTakesTheLastFall) {
+  const std::vector<double> radius = {0.5, 1.5, 2.5, 3.5};
+  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.010, 0.004, 0.002}, 0.003), 6.0);
+  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.001, 0.005, 0.001}, 0.003),
+                   6.0);  // a detached ring counts
+  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.001, 0.001, 0.001, 0.001}, 0.003), 0.0);
+  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.010, 0.010, 0.010}, 0.003), 7.0);
+  EXPECT_DOUBLE_EQ(spread({}, {}, 0.003), 0.0);
+}
+
+TEST(CentreDepth, IsExactForAParabola) {
+  const std::vector<double> radius = {0.005, 0.015};
+  const auto parabola = [](double r) { return 0.04 - 3.0 * r * r; };
+  EXPECT_NEAR(centre_depth(radius, std::vector{parabola(0.005), parabola(0.015)}), 0.04, 1e-15);
+  EXPECT_DOUBLE_EQ(centre_depth(std::vector{0.005}, std::vector{0.04}), 0.04);
+  EXPECT_DOUBLE_EQ(centre_depth({}, {}), 0.0);
+}
+
+TEST(CentreDepth, OfASampledParaboloidConvergesWithTheRings) {
+  double previous = 1.0;
+  for (const double spacing : {0.02, 0.01, 0.005}) {
+    const auto depth = sampled_paraboloid(spacing, 0.04, 0.3, 60000);
+    const double error = std::abs(centre_depth(depth.centres(), depth.depth) - 0.04) / 0.04;
+    EXPECT_LT(error, 0.35 * previous) << "spacing " << spacing;
+    previous = error;
+  }
+  EXPECT_LT(previous, 1e-3);
+}
