@@ -10,7 +10,8 @@
 #include <variant>
 #include <vector>
 
-/// The scene: what is simulated, read from TOML, checked and resolved once for every solver. SI units throughout.
+/// The scene: what is simulated, read from TOML, checked and resolved once for every solver. SI units
+/// throughout.
 namespace flowrest::scenes {
 
 enum class Kind { slump, duct };
@@ -19,11 +20,13 @@ enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
 enum class Seeding { lattice, jittered };
-/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (limit enforced).
+/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (limit
+/// enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
 enum class Wall { no_slip, slip };
 
-/// The names used in scenes, on the command line and in run.json ("elasto-viscoplastic", "quadratic-apic", ...).
+/// The names used in scenes, on the command line and in run.json ("elasto-viscoplastic", "quadratic-apic",
+/// ...).
 std::string to_string(Kind);
 std::string to_string(Dimension);
 std::string to_string(Model);
@@ -56,12 +59,12 @@ struct Geometry {
 
 struct Material {
   Model model = Model::elasto_viscoplastic;
-  double density = 0.0;            ///< kg/m3, at rest and without pressure
-  double yield_stress = 0.0;       ///< Pa, tau0
-  double plastic_viscosity = 0.0;  ///< Pa s, eta
-  double youngs_modulus = 0.0;     ///< Pa, E; resolved from bulk_modulus where that is given instead
-  double poisson_ratio = 0.0;      ///< nu
-  double equation_of_state_exponent = 7.0;    ///< gamma of Yu et al. 2026, Eq. 6
+  double density = 0.0;                     ///< kg/m3, at rest and without pressure
+  double yield_stress = 0.0;                ///< Pa, tau0
+  double plastic_viscosity = 0.0;           ///< Pa s, eta
+  double youngs_modulus = 0.0;              ///< Pa, E; resolved from bulk_modulus where that is given instead
+  double poisson_ratio = 0.0;               ///< nu
+  double equation_of_state_exponent = 7.0;  ///< gamma of Yu et al. 2026, Eq. 6
   std::optional<double> regularisation_time;  ///< s, m of Papanastasiou
   /// 1/s, where the bi-viscous law yields; resolved to 1/m where only the regularisation time is given.
   std::optional<double> critical_shear_rate;
@@ -73,9 +76,9 @@ struct Material {
 
 /// Roussel's structural build-up and breakdown, Yu et al. 2026, Eqs. 11 and 12.
 struct Thixotropy {
-  double flocculation_rate = 0.0;          ///< A_thix, Pa/s
-  double deflocculation_coefficient = 0.0; ///< alpha
-  double initial_flocculation = 0.0;       ///< lambda0
+  double flocculation_rate = 0.0;           ///< A_thix, Pa/s
+  double deflocculation_coefficient = 0.0;  ///< alpha
+  double initial_flocculation = 0.0;        ///< lambda0
 };
 
 struct Forces {
@@ -102,8 +105,8 @@ struct Output {
 struct Mpm {
   Scheme scheme = Scheme::quadratic_apic;
   double cell = 0.0;  ///< m
-  /// Particles per cell: along each axis (dimension of the scene long). A single number n in the scene is split evenly
-  /// and must be a perfect power; an array gives each axis.
+  /// Particles per cell: along each axis (dimension of the scene long). A single number n in the scene is
+  /// split evenly and must be a perfect power; an array gives each axis.
   std::vector<int> particles_per_cell;
   double cfl = 0.75;                 ///< Courant number of the acoustic step
   std::optional<double> time_step;   ///< s, fixed instead of CFL-controlled; `paper` sets 5e-4
@@ -117,12 +120,12 @@ struct Mpm {
 };
 
 struct Foam {
-  double cell = 0.0;                     ///< m
-  double max_courant = 0.25;             ///< bound on the Courant number of flow and interface
-  std::optional<double> max_time_step;   ///< s; default cell^2 density / plastic_viscosity
-  double air_density = 1.0;              ///< kg/m3
-  double air_kinematic_viscosity = 1e-2; ///< m2/s, tames air jets at no cost in spread
-  double wedge_angle = 5.0;              ///< degrees, the whole wedge
+  double cell = 0.0;                      ///< m
+  double max_courant = 0.25;              ///< bound on the Courant number of flow and interface
+  std::optional<double> max_time_step;    ///< s; default cell^2 density / plastic_viscosity
+  double air_density = 1.0;               ///< kg/m3
+  double air_kinematic_viscosity = 1e-2;  ///< m2/s, tames air jets at no cost in spread
+  double wedge_angle = 5.0;               ///< degrees, the whole wedge
 };
 
 /// Which runs `flowrest run` makes of this scene.
@@ -157,7 +160,8 @@ struct Scene {
   }
 };
 
-/// A scene that cannot be used. what() holds one line per fault: "file:line:column: what is wrong; what is allowed".
+/// A scene that cannot be used. what() holds one line per fault: "file:line:column: what is wrong; what is
+/// allowed".
 class SceneError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -165,8 +169,9 @@ class SceneError : public std::runtime_error {
 
 /// What the command line lays over a scene.
 struct Overrides {
-  std::vector<std::string> set;  ///< "material.yield_stress=100": TOML values; a word may stand without quotes
-  std::optional<Model> model;    ///< --model
+  std::vector<std::string>
+      set;                     ///< "material.yield_stress=100": TOML values; a word may stand without quotes
+  std::optional<Model> model;  ///< --model
 };
 
 /// Reads, resolves and checks a scene. `scene` is a path or the name of a file in the scenes folder.
@@ -174,7 +179,8 @@ struct Overrides {
 Scene load_scene(const std::string& scene, const Overrides& overrides = {});
 
 /// As load_scene, of a text held in memory; `path` only names it in messages.
-Scene parse_scene(const std::string& text, const std::filesystem::path& path, const Overrides& overrides = {});
+Scene parse_scene(const std::string& text, const std::filesystem::path& path,
+                  const Overrides& overrides = {});
 
 /// The resolved settings as TOML: parse_scene of it gives the same scene.
 std::string resolved_toml(const Scene&);

@@ -6,8 +6,10 @@
 namespace flowrest::scenes {
 
 struct StepLimits {
-  double acoustic = 0.0;  ///< s, cell / c at the stiffest pressure the scene can have at rest (its own weight)
-  double viscous = 0.0;   ///< s, density cell^2 / (6 eta_max) of the explicit fluid; infinite for every other update
+  double acoustic =
+      0.0;  ///< s, cell / c at the stiffest pressure the scene can have at rest (its own weight)
+  double viscous =
+      0.0;  ///< s, density cell^2 / (6 eta_max) of the explicit fluid; infinite for every other update
   double largest_cfl = 1.0;  ///< the largest stable Courant number measured, of cell / (c + |v|)
   /// The largest step that is stable: min(largest_cfl * acoustic, viscous).
   double largest() const;

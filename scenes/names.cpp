@@ -1,0 +1,85 @@
+#include "scenes/names.h"
+
+#include "scenes/text.h"
+
+namespace flowrest::scenes {
+
+const NameTable<Kind>& names_of(Kind) {
+  static const NameTable<Kind> table = {{Kind::slump, "slump"}, {Kind::duct, "duct"}};
+  return table;
+}
+
+const NameTable<Dimension>& names_of(Dimension) {
+  static const NameTable<Dimension> table = {{Dimension::axisymmetric, "axisymmetric"},
+                                             {Dimension::plane, "plane"},
+                                             {Dimension::quarter, "quarter"},
+                                             {Dimension::full, "full"}};
+  return table;
+}
+
+const NameTable<Model>& names_of(Model) {
+  static const NameTable<Model> table = {{Model::elasto_viscoplastic, "elasto-viscoplastic"},
+                                         {Model::papanastasiou, "papanastasiou"},
+                                         {Model::bi_viscous, "bi-viscous"},
+                                         {Model::newtonian, "newtonian"}};
+  return table;
+}
+
+const NameTable<Scheme>& names_of(Scheme) {
+  static const NameTable<Scheme> table = {{Scheme::quadratic_apic, "quadratic-apic"},
+                                          {Scheme::linear_flip, "linear-flip"},
+                                          {Scheme::paper, "paper"}};
+  return table;
+}
+
+const NameTable<Precision>& names_of(Precision) {
+  static const NameTable<Precision> table = {{Precision::double_precision, "double"},
+                                             {Precision::single_precision, "float"}};
+  return table;
+}
+
+const NameTable<Seeding>& names_of(Seeding) {
+  static const NameTable<Seeding> table = {{Seeding::lattice, "lattice"}, {Seeding::jittered, "jittered"}};
+  return table;
+}
+
+const NameTable<FluidUpdate>& names_of(FluidUpdate) {
+  static const NameTable<FluidUpdate> table = {{FluidUpdate::implicit_update, "implicit"},
+                                               {FluidUpdate::explicit_update, "explicit"}};
+  return table;
+}
+
+const NameTable<Wall>& names_of(Wall) {
+  static const NameTable<Wall> table = {{Wall::no_slip, "no-slip"}, {Wall::slip, "slip"}};
+  return table;
+}
+
+namespace {
+
+template <class Choice>
+std::string name_of(Choice choice) {
+  for (const auto& [known, name] : names_of(choice)) {
+    if (known == choice) return name;
+  }
+  throw std::logic_error("a choice without a name");
+}
+
+}  // namespace
+
+std::string to_string(Kind choice) { return name_of(choice); }
+std::string to_string(Dimension choice) { return name_of(choice); }
+std::string to_string(Model choice) { return name_of(choice); }
+std::string to_string(Scheme choice) { return name_of(choice); }
+std::string to_string(Precision choice) { return name_of(choice); }
+std::string to_string(Seeding choice) { return name_of(choice); }
+std::string to_string(FluidUpdate choice) { return name_of(choice); }
+std::string to_string(Wall choice) { return name_of(choice); }
+
+Model model_from_name(const std::string& name) {
+  if (const auto model = choice_named<Model>(name)) return *model;
+  const std::string near = nearest(name, all_names<Model>());
+  throw SceneError("unknown model " + quoted(name) + (near.empty() ? "" : ", nearest is " + quoted(near)) +
+                   "; allowed: " + joined(all_names<Model>()));
+}
+
+}  // namespace flowrest::scenes

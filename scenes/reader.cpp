@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "scenes/check.h"
+#include "scenes/document.h"
+#include "scenes/names.h"
+#include "scenes/resolve.h"
+#include "scenes/schema.h"
+#include "scenes/text.h"
+
+namespace flowrest::scenes {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// @throws SceneError where there is no such file or it is no scene.
+std::string read_text(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) throw SceneError(path.string() + ": no such file");
+  if (!fs::is_regular_file(path, error))
+    throw SceneError(path.string() + ": not a file; allowed: a TOML file");
+  if (fs::file_size(path, error) > largest_text) {
+    throw SceneError(
+        fmt::format("{}: larger than a scene can be; allowed: {} bytes", path.string(), largest_text));
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw SceneError(path.string() + ": cannot be read");
+  return text.str();
+}
+
+std::vector<std::string> scene_names(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The file that a path or a bare name stands for; names are looked up in `folder` and then in the scenes
+/// folder.
+/// @throws SceneError naming the scenes there are.
+fs::path find_scene(const std::string& scene, const fs::path& folder) {
+  const bool is_path = scene.ends_with(".toml") || scene.find('/') != std::string::npos;
+  std::error_code error;
+  if (is_path) return fs::path(scene).is_absolute() ? fs::path(scene) : folder / scene;
+  for (const fs::path& place : {folder, scenes_folder()}) {
+    if (fs::exists(place / (scene + ".toml"), error)) return place / (scene + ".toml");
+  }
+  const std::vector<std::string> names = scene_names(scenes_folder());
+  const std::string near = nearest(scene, names);
+  throw SceneError(fmt::format("unknown scene {}{}; allowed: a path to a .toml file, or {}", quoted(scene),
+                               near.empty() ? "" : ", nearest is " + near, joined(names)));
+}
+
+/// The chain of scenes being read, for finding cycles.
+using Chain = std::vector<fs::path>;
+
+std::string chain_text(const Chain& chain) {
+  std::string text;
+  for (const fs::path& path : chain) text += (text.empty() ? "" : " extends ") + path.string();
+  return text;
+}
+
+/// Everything a scene gives, laid over what it extends.
+Given read_layers(const std::string& text, const fs::path& path, Chain chain, Faults& faults) {
+  chain.push_back(path);
+  Given given = read_document(text, path.string(), faults);
+  const auto extends = given.values.find("extends");
+  if (extends == given.values.end()) return given;
+  const auto* name = std::get_if<std::string>(&extends->second.content);
+  if (!name) return given;  // its type is refused when the keys are read
+  const Location where = extends->second.where;
+  try {
+    const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+    const fs::path parent = find_scene(*name, folder);
+    for (const fs::path& earlier : chain) {
+      if (fs::weakly_canonical(earlier) != fs::weakly_canonical(parent)) continue;
+      chain.push_back(parent);
+      throw SceneError("extends itself: " + chain_text(chain));
+    }
+    Given base = read_layers(read_text(parent), parent, chain, faults);
+    base.start = given.start;
+    overlay(base, std::move(given));
+    base.values.erase("extends");
+    return base;
+  } catch (const SceneError& error) {
+    faults.add(where, error.what());
+    return given;
+  } catch (const fs::filesystem_error& error) {
+    faults.add(where, escaped(error.what()));
+    return given;
+  }
+}
+
+/// What --model gives.
+Given model_option(Model model) {
+  Value value;
+  value.where.source = "--model";
+  value.content = to_string(model);
+  Given given;
+  given.values["material.model"] = std::move(value);
+  return given;
+}
+
+Location place_of(const Key& key, const Given& given) {
+  const auto section = given.sections.find(key.section);
+  return section == given.sections.end() ? given.start : section->second;
+}
+
+bool is_expected(const Key& key, const Given& given) {
+  return key.required && (key.section != "thixotropy" || given.sections.contains("thixotropy"));
+}
+
+void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) {
+  const Kind kind = draft.scene.kind;
+  const auto value = given.values.find(key.path());
+  const bool suits = !key.only_kind || *key.only_kind == kind;
+  if (value == given.values.end()) {
+    if (suits && is_expected(key, given)) {
+      faults.add(place_of(key, given),
+                 fmt::format("{} is missing; needed: {} ({}{}{})", key.path(), key.meaning, key.takes,
+                             key.unit.empty() ? "" : ", in ", key.unit));
+    }
+  } else if (!suits) {
+    faults.add(value->second.where,
+               fmt::format("{} does not belong to a {}; allowed in [{}]: {}", key.path(), to_string(kind),
+                           key.section, joined(key_names(key.section, kind))));
+  } else if (const std::string wrong = key.read(value->second, draft); !wrong.empty()) {
+    faults.add(value->second.where, key.path() + " " + wrong);
+  }
+}
+
+/// Reads the kind, on which the other keys depend, and makes room for what only some scenes have.
+/// @returns false where the kind is unusable.
+bool read_kind(const Given& given, Draft& draft, Faults& faults) {
+  Faults unusable;
+  read_key(*find_key("kind"), given, draft, unusable);
+  if (unusable.any()) {
+    read_key(*find_key("kind"), given, draft, faults);
+    return false;
+  }
+  if (draft.scene.kind == Kind::duct) {
+    draft.scene.geometry = {Dimension::plane, DuctGeometry{}};
+  } else {
+    draft.scene.forces.gravity = 9.81;
+  }
+  if (given.sections.contains("thixotropy")) draft.scene.thixotropy.emplace();
+  return true;
+}
+
+Scene build(const Given& given, Faults& faults) {
+  Draft draft;
+  if (!read_kind(given, draft, faults)) faults.raise();
+  for (const Key& key : keys()) {
+    if (key.path() != "kind") read_key(key, given, draft, faults);
+  }
+  faults.raise();
+  resolve(given, draft, faults);
+  faults.raise();
+  check(given, draft.scene, faults);
+  faults.raise();
+  return draft.scene;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& path, const Overrides& overrides) {
+  Faults faults;
+  Given given = read_layers(text, path, {}, faults);
+  for (const std::string& setting : overrides.set) overlay(given, read_setting(setting, faults));
+  if (overrides.model) overlay(given, model_option(*overrides.model));
+  if (given.values.empty()) faults.raise();
+  Scene scene = build(given, faults);
+  scene.name = path.stem().string();
+  scene.path = path;
+  scene.source = text;
+  return scene;
+}
+
+Scene load_scene(const std::string& scene, const Overrides& overrides) {
+  const bool is_path = scene.ends_with(".toml") || scene.find('/') != std::string::npos;
+  const fs::path path = is_path ? fs::path(scene) : find_scene(scene, scenes_folder());
+  return parse_scene(read_text(path), path, overrides);
+}
+
+std::filesystem::path scenes_folder() {
+  const char* folder = std::getenv("FLOWREST_SCENES");
+  return folder && *folder ? fs::path(folder) : fs::path(FLOWREST_SCENES_FOLDER);
+}
+
+std::vector<SceneSummary> list_scenes() {
+  std::vector<SceneSummary> summaries;
+  for (const std::string& name : scene_names(scenes_folder())) {
+    SceneSummary summary{name, "", ""};
+    try {
+      summary.title = load_scene(name).title;
+    } catch (const SceneError& error) {
+      const std::string faults = error.what();
+      summary.error = faults.substr(0, faults.find('\n'));
+    }
+    summaries.push_back(summary);
+  }
+  return summaries;
+}
+
+}  // namespace flowrest::scenes

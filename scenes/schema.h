@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "scenes/value.h"
+
+/// Every key a scene can have, described once: reading, refusing, resolved settings and the key reference
+/// follow it.
+namespace flowrest::scenes {
+
+/// A scene on its way from what was given to what is resolved.
+struct Draft {
+  Scene scene;
+  std::optional<double> bulk_modulus;   ///< Pa, in place of Young's modulus
+  std::vector<int> particles_per_cell;  ///< as given: one number for all axes, or one for each
+  bool particles_for_each_axis = false;
+};
+
+/// One key of a scene.
+struct Key {
+  std::string section{};  ///< empty for the keys above all sections
+  std::string name{};
+  std::string unit{};
+  std::string meaning{};
+  std::string takes{};              ///< type and range in words
+  std::optional<Kind> only_kind{};  ///< the one kind of scene that has this key
+  bool required = false;   ///< by every scene of its kind (of [thixotropy]: where the table is given)
+  std::string fallback{};  ///< what holds where it is not given, where that is not the constant default
+  std::string rival{};     ///< the key whose place this one takes
+  /// Stores the value; returns what is wrong with it, or nothing.
+  std::function<std::string(const Value&, Draft&)> read{};
+  /// The resolved setting; null where it has none.
+  std::function<nlohmann::ordered_json(Draft&)> write{};
+
+  std::string path() const { return section.empty() ? name : section + "." + name; }
+};
+
+/// A table of a scene.
+struct Section {
+  std::string name;
+  std::string meaning;
+};
+
+const std::vector<Section>& sections();
+const std::vector<Key>& keys();
+
+/// The key of this dotted path, or null.
+const Key* find_key(const std::string& path);
+
+/// Names of the keys of a section that this kind of scene may give (every kind where none is named).
+std::vector<std::string> key_names(const std::string& section, std::optional<Kind> = std::nullopt);
+
+}  // namespace flowrest::scenes

@@ -1,0 +1,112 @@
+#include "scenes/step_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flowrest::scenes {
+
+namespace {
+
+/// Largest pressure at rest: the weight of the cone. A duct has none.
+double pressure_at_rest(const Scene& scene) {
+  if (scene.kind == Kind::duct) return 0.0;
+  return scene.material.density * scene.forces.gravity * scene.slump().cone_height;
+}
+
+/// Speed of longitudinal waves under pressure. From Yu et al. 2026, Eq. 6, p = K0 / gamma (exp(-gamma e) -
+/// 1), so the tangent is K = K0 + gamma p; the shear modulus scales with it.
+double sound_speed(const Material& material, double pressure) {
+  const double stiffening = 1.0 + material.equation_of_state_exponent * pressure / material.bulk_modulus();
+  return material.longitudinal_speed() * std::sqrt(stiffening);
+}
+
+/// Yield stress that thixotropy can reach by the end of a run: Yu et al. 2026, Eqs. 11 and 12 without
+/// breakdown.
+double largest_yield_stress(const Scene& scene) {
+  const double tau0 = scene.material.yield_stress;
+  if (!scene.thixotropy) return tau0;
+  return tau0 * (1.0 + scene.thixotropy->initial_flocculation) +
+         scene.thixotropy->flocculation_rate * scene.time.end;
+}
+
+/// Largest viscosity of the scene's fluid: of papanastasiou eta + m tau0, of bi-viscous eta + tau0 / critical
+/// rate.
+double largest_viscosity(const Scene& scene) {
+  const Material& material = scene.material;
+  switch (material.model) {
+    case Model::papanastasiou:
+      return material.plastic_viscosity +
+             material.regularisation_time.value_or(0.0) * largest_yield_stress(scene);
+    case Model::bi_viscous:
+      return material.plastic_viscosity +
+             largest_yield_stress(scene) / material.critical_shear_rate.value_or(1.0);
+    default:
+      return material.plastic_viscosity;
+  }
+}
+
+/// dt < density cell^2 / (6 eta_max): past it the capped stress chatters silently instead of blowing up.
+double viscous_limit(const Scene& scene) {
+  const bool is_explicit_fluid = scene.material.model != Model::elasto_viscoplastic &&
+                                 scene.mpm.fluid_update == FluidUpdate::explicit_update;
+  const double viscosity = largest_viscosity(scene);
+  if (!is_explicit_fluid || viscosity <= 0.0) return std::numeric_limits<double>::infinity();
+  return scene.material.density * scene.mpm.cell * scene.mpm.cell / (6.0 * viscosity);
+}
+
+/// Largest stable Courant number as measured: 1.15 to a Poisson ratio of 0.3, falling to 1.0 at 0.49.
+double largest_courant_number(double poisson_ratio) {
+  const double nearly_incompressible = std::clamp((poisson_ratio - 0.3) / (0.49 - 0.3), 0.0, 1.0);
+  return std::lerp(1.15, 1.0, nearly_incompressible);
+}
+
+}  // namespace
+
+double StepLimits::largest() const { return std::min(largest_cfl * acoustic, viscous); }
+
+StepLimits step_limits(const Scene& scene) {
+  StepLimits limits;
+  limits.acoustic = scene.mpm.cell / sound_speed(scene.material, pressure_at_rest(scene));
+  limits.viscous = viscous_limit(scene);
+  limits.largest_cfl = largest_courant_number(scene.material.poisson_ratio);
+  return limits;
+}
+
+namespace {
+
+/// Cells along a periodic duct: enough for the widest kernel to see itself only once.
+constexpr double duct_columns = 4.0;
+
+double occupied_cells(const Scene& scene) {
+  const double cell = scene.mpm.cell;
+  if (scene.kind == Kind::duct) return duct_columns * scene.duct().height / cell;
+  const SlumpGeometry& cone = scene.slump();
+  const double half_section = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
+  switch (scene.geometry.dimension) {
+    case Dimension::axisymmetric:
+      return half_section / (cell * cell);
+    case Dimension::plane:
+      return 2.0 * half_section / (cell * cell);
+    case Dimension::quarter:
+      return 0.25 * cone.volume() / (cell * cell * cell);
+    case Dimension::full:
+      return cone.volume() / (cell * cell * cell);
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+MpmEstimate estimate_mpm(const Scene& scene) {
+  MpmEstimate estimate;
+  estimate.cells = std::max(1.0, std::ceil(occupied_cells(scene)));
+  estimate.particles = estimate.cells;
+  for (const int along_an_axis : scene.mpm.particles_per_cell) estimate.particles *= along_an_axis;
+  const StepLimits limits = step_limits(scene);
+  estimate.step = scene.mpm.time_step.value_or(std::min(scene.mpm.cfl * limits.acoustic, limits.viscous));
+  estimate.steps = std::max(1.0, std::ceil(scene.time.end / estimate.step));
+  return estimate;
+}
+
+}  // namespace flowrest::scenes

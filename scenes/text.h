@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// Words for messages: lists, quotations and the nearest name.
+namespace flowrest::scenes {
+
+/// "a, b, c".
+std::string joined(const std::vector<std::string>&);
+
+/// Text with control characters escaped, cut when very long: fit for one line of a message.
+std::string escaped(const std::string&);
+
+/// Text from a user made fit for one line of a message: escaped and in quotes.
+std::string quoted(const std::string&);
+
+/// The candidate with the fewest slips of the pen from `word`; empty where none is near.
+std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
+
+/// The shortest text that reads back as exactly this number, always recognisable as a floating-point one.
+std::string exact_text(double);
+
+}  // namespace flowrest::scenes

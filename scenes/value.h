@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// What a scene file or the command line gives, before it is known to be right.
+namespace flowrest::scenes {
+
+/// Where something was given: a place in a file, or an option of the command line (line 0).
+struct Location {
+  std::string source;
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+  /// "file:line:column", or the option as it was given.
+  std::string text() const;
+};
+
+/// A TOML value that no key of a scene takes ("a table", "a date").
+struct Foreign {
+  std::string what;
+};
+
+/// A value as given, with its place.
+struct Value {
+  Location where;
+  std::variant<Foreign, bool, std::int64_t, double, std::string, std::vector<Value>> content;
+  /// "a number", "a string", ... for messages.
+  std::string what() const;
+};
+
+/// Everything given for a scene, by dotted path; later layers replace earlier ones key by key.
+struct Given {
+  std::map<std::string, Value> values;
+  std::map<std::string, Location> sections;  ///< tables that were opened, even if empty
+  Location start;                            ///< of the scene itself
+};
+
+/// Faults, gathered so that all are reported together.
+class Faults {
+ public:
+  void add(const Location&, const std::string& what);
+  bool any() const { return !faults_.empty(); }
+  /// @throws SceneError with one line per fault, in the order of the text, if there is any.
+  void raise() const;
+
+ private:
+  struct Fault {
+    Location where;
+    std::string what;
+  };
+  std::vector<Fault> faults_;
+};
+
+}  // namespace flowrest::scenes
