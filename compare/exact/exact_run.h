@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace flowrest::compare::exact {
+
+/// A run directory that holds a solution, with one line of what it says.
+struct ExactRun {
+  std::filesystem::path directory;
+  std::string summary;
+};
+
+/// Writes every exact or asymptotic solution the scene has into a run directory of its own below `directory`: a slump
+/// leaves `leading-order` and `second-order` (a plane one only the first), a duct `steady`. Nothing is written unless all
+/// can be.
+/// @throws runs::RunError where the scene has no such solution, saying why.
+std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory);
+
+}  // namespace flowrest::compare::exact
