@@ -2,28 +2,319 @@
 
 #include <fmt/format.h>
 
-namespace flowrest::scenes {
+#include <algorithm>
+#include <cmath>
 
-Location place_of(const std::string& path, const Given& given) {
-  if (const auto value = given.values.find(path); value != given.values.end()) return value->second.where;
-  const auto section = given.sections.find(path.substr(0, path.find('.')));
-  return section == given.sections.end() ? given.start : section->second;
-}
+#include "scenes/names.h"
+#include "scenes/step_limits.h"
+#include "scenes/text.h"
+
+namespace flowrest::scenes {
 
 namespace {
 
-void check_cone_fits(const Given& given, const SlumpGeometry& shape, Faults& faults) {
-  if (shape.cone_radius_bottom >= shape.domain_radius) {
-    faults.add(place_of("geometry.domain_radius", given),
-               fmt::format("the cone, {:g} m in radius, does not fit the domain, {:g} m in radius",
-                           shape.cone_radius_bottom, shape.domain_radius));
+/// Past these a run would fit no machine, or no lifetime.
+constexpr double most_particles = 2e9;
+constexpr double most_cells = 2e9;
+constexpr double most_particle_steps = 1e18;
+constexpr double most_outputs = 1e8;
+
+/// A body that its own weight presses to less than this part of its volume is no model of concrete.
+constexpr double least_volume_under_weight = 0.5;
+
+/// What every rule needs at hand.
+struct Case {
+  const Given& given;
+  const Draft& draft;
+  Faults& faults;
+
+  const Scene& scene() const { return draft.scene; }
+  bool usable(std::initializer_list<std::string> paths) const {
+    return std::none_of(paths.begin(), paths.end(),
+                        [&](const std::string& path) { return draft.unusable.contains(path); });
+  }
+  void fault(const std::string& path, const std::string& what) const {
+    faults.add(given.place_of(path), what);
+  }
+};
+
+/// Every model the scene may be run with.
+std::vector<Model> models_in_use(const Scene& scene) {
+  std::vector<Model> models = {scene.material.model};
+  for (const auto& list : {scene.runs.mpm, scene.runs.foam}) {
+    for (const Model model : list) {
+      if (std::find(models.begin(), models.end(), model) == models.end()) models.push_back(model);
+    }
+  }
+  return models;
+}
+
+void check_dimension(const Case& c) {
+  const Dimension dimension = c.scene().geometry.dimension;
+  if (!c.usable({"geometry.dimension"})) return;
+  if (c.scene().kind == Kind::duct && dimension != Dimension::plane) {
+    c.fault("geometry.dimension",
+            fmt::format("geometry.dimension is {}, which does not suit a duct; allowed: plane",
+                        to_string(dimension)));
+  }
+}
+
+void check_cone_fits(const Case& c) {
+  const SlumpGeometry& shape = c.scene().slump();
+  const double radius = std::max(shape.cone_radius_top, shape.cone_radius_bottom);
+  if (c.usable({"geometry.cone_radius_top", "geometry.cone_radius_bottom", "geometry.domain_radius"}) &&
+      radius >= shape.domain_radius) {
+    c.fault("geometry.domain_radius",
+            fmt::format(
+                "the cone does not fit the domain: its radius is {:g} m, geometry.domain_radius is {:g} m; "
+                "allowed: a domain wider than the cone",
+                radius, shape.domain_radius));
+  }
+  if (c.usable({"geometry.cone_height", "geometry.domain_height"}) &&
+      shape.cone_height > shape.domain_height) {
+    c.fault("geometry.domain_height",
+            fmt::format(
+                "the cone does not fit the domain: its height is {:g} m, geometry.domain_height is {:g} m; "
+                "allowed: a domain at least as high as the cone",
+                shape.cone_height, shape.domain_height));
+  }
+}
+
+/// A cell that holds the whole body resolves nothing.
+void check_cell(const Case& c, const std::string& path, double cell, const std::string& body,
+                double smallest) {
+  if (cell > smallest) {
+    c.fault(path, fmt::format("{} is {:g} m, larger than the {} ({:g} m); allowed: at most {:g}", path, cell,
+                              body, smallest, smallest));
+  }
+}
+
+void check_slump_cells(const Case& c) {
+  if (!c.usable({"geometry.cone_height", "geometry.cone_radius_bottom", "mpm.cell", "foam.cell"})) return;
+  const SlumpGeometry& shape = c.scene().slump();
+  const double smallest = std::min(shape.cone_height, shape.cone_radius_bottom);
+  check_cell(c, "mpm.cell", c.scene().mpm.cell, "cone", smallest);
+  if (c.given.gives("foam.cell")) check_cell(c, "foam.cell", c.scene().foam.cell, "cone", smallest);
+}
+
+/// The plates lie on grid lines, where a wall is exact.
+void check_duct_cells(const Case& c) {
+  if (!c.usable({"geometry.height", "mpm.cell"})) return;
+  const double height = c.scene().duct().height;
+  const double cells = height / c.scene().mpm.cell;
+  constexpr double tolerance = 1e-6;
+  check_cell(c, "mpm.cell", c.scene().mpm.cell, "duct", height);
+  if (cells >= 1.0 && cells < most_cells && std::abs(cells - std::round(cells)) > tolerance * cells) {
+    c.fault("mpm.cell",
+            fmt::format(
+                "the duct is {:g} cells high; allowed: a whole number of cells, for example mpm.cell = {:g}",
+                cells, height / std::round(cells)));
+  }
+}
+
+void check_models(const Case& c) {
+  if (!c.usable({"material.model", "runs.mpm", "runs.foam"})) return;
+  const Material& material = c.scene().material;
+  for (const Model model : models_in_use(c.scene())) {
+    if (model != Model::newtonian && !c.given.gives("material.yield_stress")) {
+      c.fault("material.yield_stress",
+              fmt::format("material.yield_stress is missing; needed by the model {}", to_string(model)));
+      break;  // once is enough
+    }
+  }
+  for (const Model model : models_in_use(c.scene())) {
+    if (model == Model::papanastasiou && c.usable({"material.regularisation_time"}) &&
+        !material.regularisation_time) {
+      c.fault("material.regularisation_time",
+              "material.regularisation_time is missing; needed by the model papanastasiou");
+    }
+    if (model == Model::bi_viscous &&
+        c.usable({"material.regularisation_time", "material.critical_shear_rate"}) &&
+        !material.critical_shear_rate) {
+      c.fault(
+          "material.critical_shear_rate",
+          "material.critical_shear_rate is missing; needed by the model bi-viscous: critical_shear_rate or "
+          "regularisation_time, of which it is the inverse");
+    }
+  }
+}
+
+void check_foam_runs(const Case& c) {
+  const std::vector<Model>& models = c.scene().runs.foam;
+  if (!c.usable({"runs.foam"}) || models.empty()) return;
+  if (c.scene().kind == Kind::duct) {
+    c.fault("runs.foam",
+            "runs.foam is given, but there is no OpenFOAM case of a duct yet; allowed: runs.mpm, runs.exact");
+  }
+  if (std::find(models.begin(), models.end(), Model::elasto_viscoplastic) != models.end()) {
+    c.fault(
+        "runs.foam",
+        "runs.foam names elasto-viscoplastic, which is not built for OpenFOAM yet; allowed: papanastasiou, "
+        "bi-viscous, newtonian");
+  }
+  if (c.usable({"material.plastic_viscosity"}) && c.scene().material.plastic_viscosity == 0.0) {
+    c.fault("material.plastic_viscosity",
+            "material.plastic_viscosity is 0, on which the step of an OpenFOAM run depends; allowed: greater "
+            "than 0 "
+            "where runs.foam names a run");
+  }
+}
+
+void check_thixotropy(const Case& c) {
+  if (!c.scene().thixotropy || !c.usable({"material.yield_stress"})) return;
+  if (c.scene().material.yield_stress == 0.0) {
+    c.fault(
+        "material.yield_stress",
+        "the yield stress is 0, but flocculation grows at flocculation_rate / yield_stress; allowed: a yield "
+        "stress greater than 0 in scenes with [thixotropy]");
+  }
+}
+
+bool step_is_known(const Case& c) {
+  return c.usable({"geometry.cone_height",
+                   "geometry.cone_radius_top",
+                   "geometry.cone_radius_bottom",
+                   "geometry.height",
+                   "geometry.dimension",
+                   "material.model",
+                   "material.density",
+                   "forces.gravity",
+                   "material.youngs_modulus",
+                   "material.bulk_modulus",
+                   "material.poisson_ratio",
+                   "material.equation_of_state_exponent",
+                   "material.yield_stress",
+                   "material.plastic_viscosity",
+                   "material.regularisation_time",
+                   "material.critical_shear_rate",
+                   "thixotropy.flocculation_rate",
+                   "thixotropy.initial_flocculation",
+                   "mpm.cell",
+                   "mpm.particles_per_cell",
+                   "mpm.cfl",
+                   "mpm.time_step",
+                   "mpm.scheme",
+                   "mpm.fluid_update",
+                   "time.end"});
+}
+
+void check_weight(const Case& c) {
+  const double volume = volume_under_weight(c.scene());
+  if (volume >= least_volume_under_weight) return;
+  c.fault("material.youngs_modulus",
+          fmt::format(
+              "the material is so soft that its own weight presses it to {:.0f} % of its volume; allowed: "
+              "moduli that keep at least {:.0f} %",
+              100.0 * volume, 100.0 * least_volume_under_weight));
+}
+
+void check_acoustic_step(const Case& c) {
+  const StepLimits limits = step_limits(c.scene());
+  const Mpm& mpm = c.scene().mpm;
+  const double limit = limits.largest_cfl * limits.acoustic;
+  if (mpm.time_step && *mpm.time_step > limit) {
+    const bool given = c.given.gives("mpm.time_step");
+    c.fault(
+        given ? "mpm.time_step" : "mpm.scheme",
+        fmt::format(
+            "{} of {:g} s is past the acoustic limit of {:g} s ({:g} cell / c, with cell = {:g} m and c = "
+            "{:g} m/s under the material's own weight); allowed: at most {:g}, a coarser mpm.cell, or "
+            "mpm.allow_unstable_step = true",
+            given ? "mpm.time_step" : "the time step of the scheme paper", *mpm.time_step, limit,
+            limits.largest_cfl, mpm.cell, mpm.cell / limits.acoustic, limit));
+  } else if (!mpm.time_step && mpm.cfl > limits.largest_cfl) {
+    c.fault("mpm.cfl",
+            fmt::format("mpm.cfl is {:g}, past the acoustic limit of {:g} at a Poisson ratio of {:g}; "
+                        "allowed: at most {:g}, or mpm.allow_unstable_step = true",
+                        mpm.cfl, limits.largest_cfl, c.scene().material.poisson_ratio, limits.largest_cfl));
+  }
+}
+
+/// A step that follows from cfl obeys the viscous limit by itself; a fixed one must be held to it, since past
+/// it nothing blows up: the capped stress chatters silently.
+void check_viscous_step(const Case& c) {
+  const Mpm& mpm = c.scene().mpm;
+  if (!mpm.time_step) return;
+  std::vector<Model> models = c.scene().runs.mpm;
+  if (std::find(models.begin(), models.end(), c.scene().material.model) == models.end()) {
+    models.push_back(c.scene().material.model);
+  }
+  Scene scene = c.scene();
+  for (const Model model : models) {
+    scene.material.model = model;
+    const double limit = step_limits(scene).viscous;
+    if (*mpm.time_step <= limit) continue;
+    c.fault(
+        c.given.gives("mpm.time_step") ? "mpm.time_step" : "mpm.scheme",
+        fmt::format(
+            "the time step of {:g} s is past the viscous limit of {:g} s of an explicit {} fluid (density "
+            "cell^2 / (6 eta_max)); allowed: at most {:g}, mpm.fluid_update = \"implicit\", or "
+            "mpm.allow_unstable_step = true",
+            *mpm.time_step, limit, to_string(model), limit));
+  }
+}
+
+void check_size(const Case& c) {
+  const MpmEstimate estimate = estimate_mpm(c.scene());
+  if (!(estimate.particles <= most_particles)) {
+    c.fault("mpm.cell",
+            fmt::format("mpm.cell is {:g} m: the scene would have {:.3g} particles; allowed: at most {:g}",
+                        c.scene().mpm.cell, estimate.particles, most_particles));
+  } else if (!(estimate.particles * estimate.steps <= most_particle_steps)) {
+    c.fault("time.end",
+            fmt::format("the run would take {:.3g} steps of {:.3g} particles; allowed: at most {:g} "
+                        "particle-steps",
+                        estimate.steps, estimate.particles, most_particle_steps));
+  }
+}
+
+void check_foam_size(const Case& c) {
+  if (!c.usable({"geometry.domain_radius", "geometry.domain_height", "foam.cell"})) return;
+  const SlumpGeometry& shape = c.scene().slump();
+  const double cell = c.scene().foam.cell;
+  const double cells = shape.domain_radius / cell * (shape.domain_height / cell);
+  if (cells <= most_cells) return;
+  c.fault(c.given.gives("foam.cell") ? "foam.cell" : "mpm.cell",
+          fmt::format("the OpenFOAM mesh would have {:.3g} cells of {:g} m; allowed: at most {:g}", cells,
+                      cell, most_cells));
+}
+
+void check_outputs(const Case& c) {
+  const Output& output = c.scene().output;
+  const std::pair<std::string, double> intervals[] = {
+      {"output.history_interval", output.history_interval},
+      {"output.profile_interval", output.profile_interval},
+      {"output.snapshot_interval", output.snapshot_interval},
+      {"output.checkpoint_interval", output.checkpoint_interval}};
+  for (const auto& [path, interval] : intervals) {
+    if (!c.usable({path, "time.end"}) || c.scene().time.end / interval <= most_outputs) continue;
+    c.fault(path, fmt::format("{} is {:g} s: there would be {:.3g} outputs; allowed: at most {:g}", path,
+                              interval, c.scene().time.end / interval, most_outputs));
   }
 }
 
 }  // namespace
 
-void check(const Given& given, const Scene& scene, Faults& faults) {
-  if (scene.kind == Kind::slump) check_cone_fits(given, scene.slump(), faults);
+void check(const Given& given, const Draft& draft, Faults& faults) {
+  const Case c{given, draft, faults};
+  check_dimension(c);
+  if (draft.scene.kind == Kind::slump) {
+    check_cone_fits(c);
+    check_slump_cells(c);
+    check_foam_size(c);
+  } else {
+    check_duct_cells(c);
+  }
+  check_models(c);
+  check_foam_runs(c);
+  check_thixotropy(c);
+  check_outputs(c);
+  if (!step_is_known(c)) return;
+  if (draft.scene.kind == Kind::slump) check_weight(c);
+  check_size(c);
+  if (draft.scene.mpm.allow_unstable_step) return;
+  check_acoustic_step(c);
+  check_viscous_step(c);
 }
 
 }  // namespace flowrest::scenes

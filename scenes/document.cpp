@@ -135,9 +135,11 @@ std::optional<toml::table> parsed(const std::string& text, const std::string& so
 Given read_document(const std::string& text, const std::string& source, Faults& faults) {
   Given given;
   given.start = {source, 1, 1};
+  given.unreadable = true;
   if (!is_readable(text, given.start, faults)) return given;
   const std::optional<toml::table> document = parsed(text, source, faults);
   if (!document) return given;
+  given.unreadable = false;
   for (auto&& [name, node] : *document) {
     const std::string key(name.str());
     const Location where = location(name.source().begin, source);
@@ -216,6 +218,7 @@ void overlay(Given& base, Given layer) {
     if (key && !key->rival.empty() && !layer.values.contains(key->rival)) base.values.erase(key->rival);
     base.values.insert_or_assign(path, std::move(value));
   }
+  base.unreadable = base.unreadable || layer.unreadable;
   for (auto& [name, where] : layer.sections) base.sections.insert_or_assign(name, where);
 }
 

@@ -18,20 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double standard_gravity = 9.81;  // m/s2
+
 /// @throws SceneError where there is no such file or it is no scene.
 std::string read_text(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) throw SceneError(path.string() + ": no such file");
+  if (!fs::exists(path, error)) throw SceneError(escaped(path.string()) + ": no such file");
   if (!fs::is_regular_file(path, error))
-    throw SceneError(path.string() + ": not a file; allowed: a TOML file");
+    throw SceneError(escaped(path.string()) + ": not a file; allowed: a TOML file");
   if (fs::file_size(path, error) > largest_text) {
-    throw SceneError(
-        fmt::format("{}: larger than a scene can be; allowed: {} bytes", path.string(), largest_text));
+    throw SceneError(fmt::format("{}: larger than a scene can be; allowed: {} bytes", escaped(path.string()),
+                                 largest_text));
   }
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file) throw SceneError(path.string() + ": cannot be read");
+  if (!file) throw SceneError(escaped(path.string()) + ": cannot be read");
   return text.str();
 }
 
@@ -70,6 +72,22 @@ std::string chain_text(const Chain& chain) {
   return text;
 }
 
+Given read_layers(const std::string& text, const fs::path& path, Chain chain, Faults& faults);
+
+/// Everything given by the scene that the last scene of the chain extends.
+/// @throws SceneError where there is none or it closes a cycle.
+Given read_extended(const std::string& name, Chain chain, Faults& faults) {
+  const fs::path folder = chain.back().parent_path().empty() ? fs::path(".") : chain.back().parent_path();
+  const fs::path extended = find_scene(name, folder);
+  const std::string text = read_text(extended);
+  for (const fs::path& earlier : chain) {
+    if (fs::weakly_canonical(earlier) != fs::weakly_canonical(extended)) continue;
+    chain.push_back(extended);
+    throw SceneError("extends itself: " + chain_text(chain));
+  }
+  return read_layers(text, extended, std::move(chain), faults);
+}
+
 /// Everything a scene gives, laid over what it extends.
 Given read_layers(const std::string& text, const fs::path& path, Chain chain, Faults& faults) {
   chain.push_back(path);
@@ -78,27 +96,18 @@ Given read_layers(const std::string& text, const fs::path& path, Chain chain, Fa
   if (extends == given.values.end()) return given;
   const auto* name = std::get_if<std::string>(&extends->second.content);
   if (!name) return given;  // its type is refused when the keys are read
-  const Location where = extends->second.where;
   try {
-    const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
-    const fs::path parent = find_scene(*name, folder);
-    for (const fs::path& earlier : chain) {
-      if (fs::weakly_canonical(earlier) != fs::weakly_canonical(parent)) continue;
-      chain.push_back(parent);
-      throw SceneError("extends itself: " + chain_text(chain));
-    }
-    Given base = read_layers(read_text(parent), parent, chain, faults);
+    Given base = read_extended(*name, chain, faults);
     base.start = given.start;
-    overlay(base, std::move(given));
-    base.values.erase("extends");
+    overlay(base, given);
     return base;
   } catch (const SceneError& error) {
-    faults.add(where, error.what());
-    return given;
+    faults.add(extends->second.where, error.what());
   } catch (const fs::filesystem_error& error) {
-    faults.add(where, escaped(error.what()));
-    return given;
+    faults.add(extends->second.where, escaped(error.what()));
   }
+  given.unreadable = true;
+  return given;
 }
 
 /// What --model gives.
@@ -111,62 +120,65 @@ Given model_option(Model model) {
   return given;
 }
 
-Location place_of(const Key& key, const Given& given) {
-  const auto section = given.sections.find(key.section);
-  return section == given.sections.end() ? given.start : section->second;
-}
-
 bool is_expected(const Key& key, const Given& given) {
   return key.required && (key.section != "thixotropy" || given.sections.contains("thixotropy"));
 }
 
+std::string missing(const Key& key) {
+  const std::string unit = key.unit.empty() ? "" : ", in " + key.unit;
+  return fmt::format("{} is missing; needed: {} ({}{})", key.path(), key.meaning, key.takes, unit);
+}
+
+std::string misplaced(const Key& key, Kind kind) {
+  return fmt::format("{} does not belong to a {}; allowed in [{}]: {}", key.path(), to_string(kind),
+                     key.section, joined(key_names(key.section, kind)));
+}
+
+/// Stores what is given for a key, or says what is wrong with it.
 void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) {
   const Kind kind = draft.scene.kind;
   const auto value = given.values.find(key.path());
+  const bool is_given = value != given.values.end();
   const bool suits = !key.only_kind || *key.only_kind == kind;
-  if (value == given.values.end()) {
-    if (suits && is_expected(key, given)) {
-      faults.add(place_of(key, given),
-                 fmt::format("{} is missing; needed: {} ({}{}{})", key.path(), key.meaning, key.takes,
-                             key.unit.empty() ? "" : ", in ", key.unit));
-    }
-  } else if (!suits) {
-    faults.add(value->second.where,
-               fmt::format("{} does not belong to a {}; allowed in [{}]: {}", key.path(), to_string(kind),
-                           key.section, joined(key_names(key.section, kind))));
-  } else if (const std::string wrong = key.read(value->second, draft); !wrong.empty()) {
-    faults.add(value->second.where, key.path() + " " + wrong);
+  std::string wrong;
+  if (is_given && !suits) {
+    wrong = misplaced(key, kind);
+  } else if (is_given) {
+    wrong = key.read(value->second, draft);
+    if (!wrong.empty()) wrong = fmt::format("{} {}", key.path(), wrong);
+  } else if (suits && is_expected(key, given)) {
+    wrong = missing(key);
   }
+  if (wrong.empty()) return;
+  faults.add(given.place_of(key.path()), wrong);
+  draft.unusable.insert(key.path());
 }
 
-/// Reads the kind, on which the other keys depend, and makes room for what only some scenes have.
-/// @returns false where the kind is unusable.
-bool read_kind(const Given& given, Draft& draft, Faults& faults) {
-  Faults unusable;
-  read_key(*find_key("kind"), given, draft, unusable);
-  if (unusable.any()) {
-    read_key(*find_key("kind"), given, draft, faults);
-    return false;
-  }
-  if (draft.scene.kind == Kind::duct) {
-    draft.scene.geometry = {Dimension::plane, DuctGeometry{}};
+/// Sets what differs between kinds before anything is read, and makes room for what only some scenes have.
+void prepare(const Given& given, Draft& draft) {
+  if (draft.scene.kind == Kind::slump) {
+    draft.scene.forces.gravity = standard_gravity;
   } else {
-    draft.scene.forces.gravity = 9.81;
+    draft.scene.geometry = {Dimension::plane, DuctGeometry{}};
+    draft.scene.time.stop_at_rest = false;  // it starts from rest
   }
   if (given.sections.contains("thixotropy")) draft.scene.thixotropy.emplace();
-  return true;
 }
 
+/// @throws SceneError
 Scene build(const Given& given, Faults& faults) {
   Draft draft;
-  if (!read_kind(given, draft, faults)) faults.raise();
+  read_key(*find_key("kind"), given, draft, faults);
+  const bool kind_is_known = draft.unusable.empty();
+  prepare(given, draft);
   for (const Key& key : keys()) {
-    if (key.path() != "kind") read_key(key, given, draft, faults);
+    // Without a kind, what depends on it can be neither expected nor refused.
+    if (key.path() != "kind" && (kind_is_known || !key.only_kind)) read_key(key, given, draft, faults);
   }
-  faults.raise();
-  resolve(given, draft, faults);
-  faults.raise();
-  check(given, draft.scene, faults);
+  if (kind_is_known) {
+    resolve(given, draft, faults);
+    check(given, draft, faults);
+  }
   faults.raise();
   return draft.scene;
 }
@@ -178,7 +190,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path, co
   Given given = read_layers(text, path, {}, faults);
   for (const std::string& setting : overrides.set) overlay(given, read_setting(setting, faults));
   if (overrides.model) overlay(given, model_option(*overrides.model));
-  if (given.values.empty()) faults.raise();
+  if (given.unreadable) faults.raise();  // nothing can be said about what is missing
   Scene scene = build(given, faults);
   scene.name = path.stem().string();
   scene.path = path;

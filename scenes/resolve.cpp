@@ -2,33 +2,37 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "scenes/check.h"
 #include "scenes/names.h"
 
 namespace flowrest::scenes {
 
 namespace {
 
-bool gives(const Given& given, const std::string& path) { return given.values.contains(path); }
-
 void resolve_runs(const Given& given, Scene& scene) {
-  const bool named = gives(given, "runs.mpm") || gives(given, "runs.foam") || gives(given, "runs.exact");
+  const bool named = given.gives("runs.mpm") || given.gives("runs.foam") || given.gives("runs.exact");
   if (!named) scene.runs.mpm = {scene.material.model};
 }
 
+/// A fault in a setting, from which nothing may be concluded any more.
+void refuse(const Given& given, Draft& draft, Faults& faults, const std::string& path,
+            const std::string& what) {
+  faults.add(given.place_of(path), what);
+  draft.unusable.insert(path);
+}
+
 void resolve_moduli(const Given& given, Draft& draft, Faults& faults) {
-  const bool young = gives(given, "material.youngs_modulus");
-  if (young && draft.bulk_modulus) {
-    faults.add(
-        place_of("material.bulk_modulus", given),
-        "material.bulk_modulus and material.youngs_modulus are both given; allowed: one of them, the other "
-        "follows from the Poisson ratio");
-  } else if (!young && !draft.bulk_modulus) {
-    faults.add(place_of("material.youngs_modulus", given),
-               "material.youngs_modulus is missing; needed: youngs_modulus or bulk_modulus (Pa)");
+  const bool young = given.gives("material.youngs_modulus");
+  const bool bulk = given.gives("material.bulk_modulus");
+  if (young && bulk) {
+    refuse(given, draft, faults, "material.bulk_modulus",
+           "material.bulk_modulus and material.youngs_modulus are both given; allowed: one of them, the "
+           "other follows "
+           "from the Poisson ratio");
+  } else if (!young && !bulk) {
+    refuse(given, draft, faults, "material.youngs_modulus",
+           "material.youngs_modulus is missing; needed: youngs_modulus or bulk_modulus (Pa)");
   } else if (draft.bulk_modulus) {
     Material& material = draft.scene.material;
     material.youngs_modulus = 3.0 * *draft.bulk_modulus * (1.0 - 2.0 * material.poisson_ratio);
@@ -43,33 +47,36 @@ int exact_root(int number, int power) {
 
 /// A number is a square or a cube, and its root is the number along each axis whatever the dimension: so a
 /// scene that says 9 for 2D keeps its spacing, with 27 a cell, when it is run in 3D.
+int along_each_axis(int number, int dimension) {
+  const int other_dimension = dimension == 2 ? 3 : 2;
+  const int root = exact_root(number, dimension);
+  return root ? root : exact_root(number, other_dimension);
+}
+
 void resolve_particles(const Given& given, Draft& draft, Faults& faults) {
-  constexpr int default_along_an_axis = 3;
+  const std::string path = "mpm.particles_per_cell";
+  if (draft.unusable.contains(path) || draft.unusable.contains("geometry.dimension")) return;
   const int dimension = draft.scene.spatial_dimension();
   std::vector<int>& axes = draft.scene.mpm.particles_per_cell;
-  const Location where = place_of("mpm.particles_per_cell", given);
-  if (!gives(given, "mpm.particles_per_cell")) {
+  if (!given.gives(path)) {
+    constexpr int default_along_an_axis = 3;
     axes.assign(dimension, default_along_an_axis);
   } else if (draft.particles_for_each_axis) {
     axes = draft.particles_per_cell;
     if (std::ssize(axes) == dimension) return;
-    faults.add(
-        where,
-        fmt::format("mpm.particles_per_cell has {} entries; allowed: {}, one for each axis of a {} scene",
-                    axes.size(), dimension, to_string(draft.scene.geometry.dimension)));
+    refuse(given, draft, faults, path,
+           fmt::format("{} has {} entries; allowed: {}, one for each axis of a computation that is {}", path,
+                       axes.size(), dimension, to_string(draft.scene.geometry.dimension)));
+  } else if (const int root = along_each_axis(draft.particles_per_cell.front(), dimension)) {
+    axes.assign(dimension, root);
   } else {
     const int number = draft.particles_per_cell.front();
-    const int own = exact_root(number, dimension);
-    const int root = own ? own : exact_root(number, 5 - dimension);
-    if (root) {
-      axes.assign(dimension, root);
-      return;
-    }
-    const int near = static_cast<int>(std::max(1L, std::lround(std::pow(number, 1.0 / dimension))));
-    faults.add(where,
-               fmt::format("mpm.particles_per_cell is {}, which is neither a square nor a cube; allowed: for "
-                           "example {}, or an array with one entry for each axis",
-                           number, std::lround(std::pow(near, dimension))));
+    const double near = std::round(std::pow(number, 1.0 / dimension));
+    refuse(given, draft, faults, path,
+           fmt::format(
+               "{} is {}, neither a square nor a cube; allowed: for example {:g}, or an array with one entry "
+               "for each axis",
+               path, number, std::pow(near, dimension)));
   }
 }
 
@@ -85,7 +92,7 @@ void resolve(const Given& given, Draft& draft, Faults& faults) {
     scene.material.critical_shear_rate = 1.0 / *scene.material.regularisation_time;
   }
   if (scene.mpm.scheme == Scheme::paper && !scene.mpm.time_step) scene.mpm.time_step = step_of_paper;
-  if (!gives(given, "foam.cell")) scene.foam.cell = scene.mpm.cell;
+  if (!given.gives("foam.cell")) scene.foam.cell = scene.mpm.cell;
 }
 
 }  // namespace flowrest::scenes

@@ -363,9 +363,10 @@ std::vector<Key> geometry_keys() {
       slump_length(
           "cone_height", [](Draft& d) -> double& { return slump_of(d).cone_height; },
           "height of the cone of material"),
-      slump_length(
-          "cone_radius_top", [](Draft& d) -> double& { return slump_of(d).cone_radius_top; },
-          "radius of the cone at its top"),
+      only(Kind::slump, required(number(
+                            "geometry", "cone_radius_top", "m", from(0.0, longest),
+                            [](Draft& d) -> double& { return slump_of(d).cone_radius_top; },
+                            "radius of the cone at its top"))),
       slump_length(
           "cone_radius_bottom", [](Draft& d) -> double& { return slump_of(d).cone_radius_bottom; },
           "radius of the cone at the plate"),
@@ -459,9 +460,10 @@ std::vector<Key> wall_force_and_time_keys() {
       required(number(
           "time", "end", "s", above(0.0, largest_time), [](Draft& d) -> double& { return d.scene.time.end; },
           "simulated time at which a run ends")),
-      boolean(
-          "time", "stop_at_rest", [](Draft& d) -> bool& { return d.scene.time.stop_at_rest; },
-          "whether an elasto-viscoplastic run ends as soon as it is at rest (a fluid never is)"),
+      fallback("true (slump), false (duct)",
+               boolean(
+                   "time", "stop_at_rest", [](Draft& d) -> bool& { return d.scene.time.stop_at_rest; },
+                   "whether an elasto-viscoplastic run ends as soon as it is at rest (a fluid never is)")),
       number(
           "time", "rest_bound", "", above(0.0, 1.0),
           [](Draft& d) -> double& { return d.scene.time.rest_bound; },

@@ -3,6 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Draft {
   std::optional<double> bulk_modulus;   ///< Pa, in place of Young's modulus
   std::vector<int> particles_per_cell;  ///< as given: one number for all axes, or one for each
   bool particles_for_each_axis = false;
+  std::set<std::string> unusable;  ///< keys that are missing or at fault: nothing may be concluded from them
 };
 
 /// One key of a scene.

@@ -8,17 +8,10 @@ namespace flowrest::scenes {
 
 namespace {
 
-/// Largest pressure at rest: the weight of the cone. A duct has none.
-double pressure_at_rest(const Scene& scene) {
-  if (scene.kind == Kind::duct) return 0.0;
-  return scene.material.density * scene.forces.gravity * scene.slump().cone_height;
-}
-
-/// Speed of longitudinal waves under pressure. From Yu et al. 2026, Eq. 6, p = K0 / gamma (exp(-gamma e) -
-/// 1), so the tangent is K = K0 + gamma p; the shear modulus scales with it.
-double sound_speed(const Material& material, double pressure) {
-  const double stiffening = 1.0 + material.equation_of_state_exponent * pressure / material.bulk_modulus();
-  return material.longitudinal_speed() * std::sqrt(stiffening);
+/// K / K0 under a pressure. From Yu et al. 2026, Eq. 6, p = K0 / gamma (exp(-gamma e) - 1), so the tangent is
+/// K = K0 + gamma p.
+double stiffening(const Material& material, double pressure) {
+  return 1.0 + material.equation_of_state_exponent * pressure / material.bulk_modulus();
 }
 
 /// Yield stress that thixotropy can reach by the end of a run: Yu et al. 2026, Eqs. 11 and 12 without
@@ -65,9 +58,24 @@ double largest_courant_number(double poisson_ratio) {
 
 double StepLimits::largest() const { return std::min(largest_cfl * acoustic, viscous); }
 
+double pressure_at_rest(const Scene& scene) {
+  if (scene.kind == Kind::duct) return 0.0;
+  return scene.material.density * scene.forces.gravity * scene.slump().cone_height;
+}
+
+double volume_under_weight(const Scene& scene) {
+  // exp(e) from K / K0 = exp(-gamma e)
+  return std::pow(stiffening(scene.material, pressure_at_rest(scene)),
+                  -1.0 / scene.material.equation_of_state_exponent);
+}
+
 StepLimits step_limits(const Scene& scene) {
   StepLimits limits;
-  limits.acoustic = scene.mpm.cell / sound_speed(scene.material, pressure_at_rest(scene));
+  // The shear modulus scales with K, so the speed of longitudinal waves grows with the root of the
+  // stiffening.
+  const double speed =
+      scene.material.longitudinal_speed() * std::sqrt(stiffening(scene.material, pressure_at_rest(scene)));
+  limits.acoustic = scene.mpm.cell / speed;
   limits.viscous = viscous_limit(scene);
   limits.largest_cfl = largest_courant_number(scene.material.poisson_ratio);
   return limits;

@@ -17,6 +17,12 @@ struct StepLimits {
 
 StepLimits step_limits(const Scene&);
 
+/// Largest pressure at rest: density gravity height of a slump's cone, none in a duct. Pa
+double pressure_at_rest(const Scene&);
+
+/// Part of its volume that the material keeps under pressure_at_rest (Yu et al. 2026, Eq. 6).
+double volume_under_weight(const Scene&);
+
 /// Steps, particles and cells a run will take, and its expected cost.
 struct MpmEstimate {
   double particles = 0.0;

@@ -25,6 +25,12 @@ std::string Value::what() const {
   return std::visit(Namer{}, content);
 }
 
+Location Given::place_of(const std::string& path) const {
+  if (const auto value = values.find(path); value != values.end()) return value->second.where;
+  const auto section = sections.find(path.substr(0, path.find('.')));
+  return section == sections.end() ? start : section->second;
+}
+
 void Faults::add(const Location& where, const std::string& what) { faults_.push_back({where, what}); }
 
 void Faults::raise() const {

@@ -36,6 +36,11 @@ struct Given {
   std::map<std::string, Value> values;
   std::map<std::string, Location> sections;  ///< tables that were opened, even if empty
   Location start;                            ///< of the scene itself
+  bool unreadable = false;                   ///< a text was no TOML, or what it extends cannot be had
+
+  bool gives(const std::string& path) const { return values.contains(path); }
+  /// The place to speak of when a key is at fault: its value, else its section, else the scene.
+  Location place_of(const std::string& path) const;
 };
 
 /// Faults, gathered so that all are reported together.
