@@ -20,7 +20,11 @@ struct Draft {
   std::optional<double> bulk_modulus;   ///< Pa, in place of Young's modulus
   std::vector<int> particles_per_cell;  ///< as given: one number for all axes, or one for each
   bool particles_for_each_axis = false;
+  std::string extends;             ///< followed by the reader before any other key is stored
   std::set<std::string> unusable;  ///< keys that are missing or at fault: nothing may be concluded from them
+
+  SlumpGeometry& slump() { return std::get<SlumpGeometry>(scene.geometry.shape); }
+  DuctGeometry& duct() { return std::get<DuctGeometry>(scene.geometry.shape); }
 };
 
 /// One key of a scene.
@@ -40,6 +44,11 @@ struct Key {
   std::function<nlohmann::ordered_json(Draft&)> write{};
 
   std::string path() const { return section.empty() ? name : section + "." + name; }
+
+  Key&& needed() && { return required = true, std::move(*this); }
+  Key&& only_in(Kind kind) && { return only_kind = kind, std::move(*this); }
+  Key&& otherwise(std::string text) && { return fallback = std::move(text), std::move(*this); }
+  Key&& replaces(std::string path_of_rival) && { return rival = std::move(path_of_rival), std::move(*this); }
 };
 
 /// A table of a scene.
