@@ -1,0 +1,226 @@
+#include "foamCases/case_filler.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+
+#include "foamCases/viscosity.h"
+#include "foamCases/wedge_grid.h"
+#include "runs/run_directory.h"
+
+namespace flowrest::foam {
+
+namespace fs = std::filesystem;
+using scenes::Model;
+using scenes::Scene;
+using scenes::SceneError;
+
+namespace {
+
+/// What a user may keep in a case folder beside its sources, and a copy must not take along.
+bool belongs_to_case(const fs::path& name) {
+  static constexpr std::array<const char*, 6> parts = {"0.orig",          "constant", "system",
+                                                       "sceneParameters", "Allrun",   "Allclean"};
+  return std::find(parts.begin(), parts.end(), name.string()) != parts.end();
+}
+
+[[noreturn]] void refuse(const Scene& scene, const std::string& what) {
+  throw SceneError(fmt::format("{}: {}", scene.path.string(), what));
+}
+
+void check_model(const Scene& scene) {
+  const auto& material = scene.material;
+  const char* allowed = "allowed: papanastasiou, bi-viscous, newtonian";
+  switch (material.model) {
+    case Model::elasto_viscoplastic:
+      refuse(scene,
+             fmt::format("model elasto-viscoplastic: interFoam's built-in fluids never come to rest, so it "
+                         "needs a rheology plug-in that there is not yet; {}",
+                         allowed));
+    case Model::papanastasiou:
+      if (!material.regularisation_time)
+        refuse(scene, "model papanastasiou needs material.regularisation_time, in s and above 0");
+      break;
+    case Model::bi_viscous:
+      if (!material.critical_shear_rate)
+        refuse(scene, "model bi-viscous needs material.critical_shear_rate, in 1/s and above 0");
+      break;
+    case Model::newtonian:
+      break;
+  }
+  if (scene.thixotropy)
+    refuse(
+        scene,
+        "[thixotropy]: interFoam's built-in fluids have no memory, so it needs a rheology plug-in that there "
+        "is not yet; allowed: a scene without [thixotropy]");
+}
+
+std::string concrete_viscosity(const scenes::Material& material) {
+  const double k = material.plastic_viscosity / material.density;
+  switch (material.model) {
+    case Model::papanastasiou:
+      return fmt::format(
+          "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / rho with eta = {} Pa s, tau0 = {} Pa, "
+          "m = {} s,\n"
+          "// given as a table of (rate in 1/s, viscosity in m2/s) that linear interpolation keeps to 0.1 "
+          "%.\n"
+          "concreteViscosity\n{{\n    transportModel  strainRateFunction;\n    strainRateFunctionCoeffs\n    "
+          "{{\n"
+          "        function    table $strainRateTable;\n    }}\n}}\n",
+          material.plastic_viscosity, material.yield_stress, material.regularisation_time.value());
+    case Model::bi_viscous:
+      return fmt::format(
+          "// Bi-viscous: min(nu0, (tau0 / rate + eta) / rho) with eta = {} Pa s, tau0 = {} Pa; the branches "
+          "meet at\n"
+          "// {} 1/s. HerschelBulkley takes its stresses over the density.\n"
+          "concreteViscosity\n{{\n    transportModel  HerschelBulkley;\n    HerschelBulkleyCoeffs\n    {{\n"
+          "        nu0     {};\n        tau0    {};\n        k       {};\n        n       1;\n    }}\n}}\n",
+          material.plastic_viscosity, material.yield_stress, material.critical_shear_rate.value(),
+          bi_viscous_viscosity_at_rest(material), material.yield_stress / material.density, k);
+    case Model::newtonian:
+      return fmt::format(
+          "// Newtonian: eta / rho with eta = {} Pa s.\n"
+          "concreteViscosity\n{{\n    transportModel  Newtonian;\n    nu              {};\n}}\n",
+          material.plastic_viscosity, k);
+    case Model::elasto_viscoplastic:
+      break;
+  }
+  throw std::logic_error("a model the case does not run");
+}
+
+std::string strain_rate_table(const scenes::Material& material) {
+  std::string text = "\nstrainRateTable\n(\n";
+  for (const auto& point : papanastasiou_table(material))
+    text += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
+  return text + ");\n";
+}
+
+std::string mesh_parameters(const Scene& scene) {
+  const auto& cone = scene.slump();
+  const auto grid = wedge_grid(scene);
+  const double half_width =
+      cone.domain_radius * std::tan(0.5 * scene.foam.wedge_angle * std::numbers::pi / 180.0);
+  return fmt::format(
+      "// Mesh, m: a wedge of {} degrees with cells of about {} m.\n"
+      "coneHeight          {};\n"
+      "coneRadiusBottom    {};\n"
+      "flankNormal         ({} 0 {});  // (height, 0, bottom radius - top radius)\n"
+      "domainRadius        {};\n"
+      "domainHeight        {};\n"
+      "halfWidth           {};  // domainRadius tan(half angle)\n"
+      "minusHalfWidth      {};\n"
+      "radialCells         {};\n"
+      "coneCells           {};\n"
+      "airCells            {};\n",
+      scene.foam.wedge_angle, scene.foam.cell, cone.cone_height, cone.cone_radius_bottom, cone.cone_height,
+      cone.cone_radius_bottom - cone.cone_radius_top, cone.domain_radius, cone.domain_height, half_width,
+      -half_width, grid.rings, grid.cone_rows, grid.air_rows);
+}
+
+std::string time_parameters(const Scene& scene) {
+  const double step = largest_time_step(scene);
+  return fmt::format(
+      "\n// Time, s.\n"
+      "endTime             {};\n"
+      "firstDeltaT         {};\n"
+      "maxDeltaT           {};\n"
+      "maxCourant          {};\n"
+      "sampleInterval      {};\n"
+      "snapshotInterval    {};\n",
+      scene.time.end, std::min(0.02 * step, 0.01 * scene.time.end), step, scene.foam.max_courant,
+      sample_interval(scene), scene.output.snapshot_interval);
+}
+
+std::string phase_parameters(const Scene& scene) {
+  return fmt::format(
+      "\n// Forces and walls.\n"
+      "gravity             (0 0 {});  // m/s2\n"
+      "baseWall            {};\n"
+      "\n// Phases: densities in kg/m3, kinematic viscosities in m2/s. Air this viscous tames jets over the "
+      "toe at no\n"
+      "// cost in spread.\n"
+      "airDensity          {};\n"
+      "airViscosity        {};\n"
+      "concreteDensity     {};\n\n",
+      -scene.forces.gravity, scene.base == scenes::Wall::slip ? "slip" : "noSlip", scene.foam.air_density,
+      scene.foam.air_kinematic_viscosity, scene.material.density);
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text << std::flush;
+  if (!file) throw runs::RunError(fmt::format("{}: cannot be written", path.string()));
+}
+
+}  // namespace
+
+void check_supported(const Scene& scene) {
+  if (scene.kind != scenes::Kind::slump)
+    refuse(scene, fmt::format("kind {}: there is no OpenFOAM case of it yet; allowed: slump",
+                              scenes::to_string(scene.kind)));
+  if (scene.geometry.dimension != scenes::Dimension::axisymmetric)
+    refuse(scene, fmt::format("geometry.dimension {}: the slump case is a wedge; allowed: axisymmetric",
+                              scenes::to_string(scene.geometry.dimension)));
+  check_model(scene);
+  wedge_grid(scene);
+}
+
+fs::path cases_folder() {
+  if (const char* folder = std::getenv("FLOWREST_FOAM_CASES"); folder != nullptr && *folder != '\0')
+    return folder;
+  return FLOWREST_FOAM_CASES_FOLDER;
+}
+
+double largest_time_step(const Scene& scene) {
+  if (scene.foam.max_time_step) return *scene.foam.max_time_step;
+  const double viscous = scene.foam.cell * scene.foam.cell * scene.material.density /
+                         std::max(scene.material.plastic_viscosity, 1e-300);
+  return std::min(viscous, sample_interval(scene));
+}
+
+double sample_interval(const Scene& scene) {
+  return std::min(scene.output.history_interval, scene.output.profile_interval);
+}
+
+std::string scene_parameters(const Scene& scene) {
+  return fmt::format(
+             "// The scene '{}' in numbers: the only file of this case that `flowrest foam` writes. Every "
+             "dictionary\n"
+             "// includes it. SI units; stresses and viscosities of the transport models are over the "
+             "density.\n\n",
+             scene.name) +
+         mesh_parameters(scene) + time_parameters(scene) + phase_parameters(scene) +
+         (scene.material.model == Model::papanastasiou
+              ? strain_rate_table(scene.material).substr(1) + "\n" + concrete_viscosity(scene.material)
+              : concrete_viscosity(scene.material));
+}
+
+void fill_case(const Scene& scene, const fs::path& directory) {
+  const fs::path source = cases_folder() / scenes::to_string(scene.kind);
+  std::error_code error;
+  if (!fs::is_directory(source / "system", error))
+    throw runs::RunError(
+        fmt::format("{}: no OpenFOAM case is there; FLOWREST_FOAM_CASES must name the folder that holds one "
+                    "per kind of scene",
+                    source.string()));
+  try {
+    fs::create_directories(directory);
+    for (const auto& entry : fs::directory_iterator(source))
+      if (belongs_to_case(entry.path().filename()))
+        fs::copy(entry.path(), directory / entry.path().filename(),
+                 fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    fs::remove_all(directory / "constant" / "polyMesh");
+    fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
+  } catch (const fs::filesystem_error& fault) {
+    throw runs::RunError(fmt::format("{}: the case cannot be copied: {}", directory.string(), fault.what()));
+  }
+  write_text(directory / "sceneParameters", scene_parameters(scene));
+  write_text(directory / "case.foam", "");
+}
+
+}  // namespace flowrest::foam

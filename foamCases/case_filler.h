@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scenes/scene.h"
+
+/// Fills an OpenFOAM case from a scene: the case is copied as it is, and one file in it, sceneParameters, is
+/// written.
+namespace flowrest::foam {
+
+/// Says whether the built-in case can run a scene, with its model, dimension and walls.
+/// @throws scenes::SceneError naming what it cannot and what is allowed.
+void check_supported(const scenes::Scene&);
+
+/// The folder of the cases: FLOWREST_FOAM_CASES where set, else the source tree's.
+std::filesystem::path cases_folder();
+
+/// The step above which the creeping material turns to noise: foam.max_time_step, or cell^2 density / plastic
+/// viscosity where that is shorter than a sample of the history. s
+double largest_time_step(const scenes::Scene&);
+
+/// Simulated seconds between the samples interFoam writes for the gauges.
+double sample_interval(const scenes::Scene&);
+
+/// The text of sceneParameters.
+std::string scene_parameters(const scenes::Scene&);
+
+/// Copies the scene's case into `directory`, with its sceneParameters and its initial fields in 0/.
+/// @throws runs::RunError where the case cannot be found or copied.
+void fill_case(const scenes::Scene&, const std::filesystem::path& directory);
+
+}  // namespace flowrest::foam

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Follows interFoam's log while it is written, and judges from it whether the run can be trusted.
+namespace flowrest::foam {
+
+/// One time step as the log tells it.
+struct SolverStep {
+  double time = 0.0;                ///< s, at its end
+  double time_step = 0.0;           ///< s
+  double courant = 0.0;             ///< largest in the mesh
+  double initial_residual_u = 0.0;  ///< the largest of the wedge's two components, radial and vertical
+};
+
+/// Turns log text, fed in any pieces, into steps; a line counts once it is whole.
+class SolverLog {
+ public:
+  void feed(std::string_view text);
+
+  /// Steps that ended since the last call.
+  std::vector<SolverStep> take_steps();
+
+  /// The time the solver last began a step to; what was written for earlier times is complete. s
+  std::optional<double> time_begun() const { return time_begun_; }
+  bool ended() const { return ended_; }                ///< by itself, with "End"
+  const std::string& build() const { return build_; }  ///< e.g. "OPENFOAM=1912 patch=200626"
+  /// Why the solver cannot go on, from its own message or from a number that is none; empty while all is
+  /// well.
+  std::string fault() const;
+
+ private:
+  void read_line(std::string_view line);
+  void read_fault(std::string_view line);
+
+  std::string partial_;
+  SolverStep step_;
+  std::vector<SolverStep> steps_;
+  std::optional<double> time_begun_;
+  bool ended_ = false;
+  bool in_step_ = false;
+  std::string build_;
+  std::string fatal_;
+  int fatal_lines_left_ = 0;
+  std::string not_a_number_;
+};
+
+/// Reads what a growing file has gained.
+class FileTail {
+ public:
+  explicit FileTail(std::filesystem::path path) : path_(std::move(path)) {}
+  /// Empty where there is nothing new, or no file yet.
+  std::string read();
+
+ private:
+  std::filesystem::path path_;
+  std::streamoff at_ = 0;
+};
+
+/// The noise monitor. In a sound run the velocity hardly changes over a step, so the initial residual of U
+/// stays below 0.025 once the concrete is released; where splitting or step fail it chatters at 0.2 to 1, and
+/// the chatter spreads the concrete.
+class NoiseMonitor {
+ public:
+  static constexpr double bound = 0.05;
+  static constexpr std::size_t block =
+      50;  ///< steps; each block is judged by its median, the first one not at all
+
+  void add(const SolverStep&);
+  /// "sound", or "noisy: " with when and how much.
+  std::string verdict() const;
+  double noisy_share() const;  ///< of the blocks judged
+  double largest_median() const { return largest_median_; }
+
+ private:
+  std::vector<double> block_;
+  double block_start_ = 0.0;
+  std::size_t blocks_ = 0;
+  std::size_t noisy_ = 0;
+  double first_noisy_ = 0.0;
+  double last_noisy_ = 0.0;
+  double largest_median_ = 0.0;
+};
+
+}  // namespace flowrest::foam

@@ -1,0 +1,44 @@
+#include "foamCases/viscosity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flowrest::foam {
+
+namespace {
+
+/// A chord of c / rate over a ratio q of rates lies at most (q - 1)^2 / 4 above it (relative, q near 1).
+constexpr double rate_ratio = 1.05;
+/// Past this share of the viscosity the yield stress may be held as it is in the last row.
+constexpr double negligible = 2e-4;
+/// No concrete is sheared faster (1/s); it ends the table of a material that has no plastic viscosity.
+constexpr double largest_rate = 1e6;
+
+}  // namespace
+
+double papanastasiou_viscosity(const scenes::Material& material, double shear_rate) {
+  const double m = material.regularisation_time.value();
+  const double yield_part = shear_rate > 0.0 ? -std::expm1(-m * shear_rate) / shear_rate : m;
+  return (material.plastic_viscosity + material.yield_stress * yield_part) / material.density;
+}
+
+std::vector<TablePoint> papanastasiou_table(const scenes::Material& material) {
+  const double m = material.regularisation_time.value();
+  const double first = 0.01 / m;  // below it the law falls linearly with the rate
+  const double flowing = material.yield_stress / std::max(negligible * material.plastic_viscosity, 1e-300);
+  const double last = std::clamp(flowing, 10.0 * first, std::max(largest_rate, 10.0 * first));
+  std::vector<TablePoint> table{{0.0, papanastasiou_viscosity(material, 0.0)}};
+  const int rows = static_cast<int>(std::ceil(std::log(last / first) / std::log(rate_ratio)));
+  for (int row = 0; row <= rows; ++row) {
+    const double rate = first * std::pow(rate_ratio, row);
+    table.push_back({rate, papanastasiou_viscosity(material, rate)});
+  }
+  return table;
+}
+
+double bi_viscous_viscosity_at_rest(const scenes::Material& material) {
+  return (material.plastic_viscosity + material.yield_stress / material.critical_shear_rate.value()) /
+         material.density;
+}
+
+}  // namespace flowrest::foam

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "scenes/scene.h"
+
+/// The regularised Bingham laws as interFoam's built-in viscosity models are given them.
+namespace flowrest::foam {
+
+/// One row of a viscosity table.
+struct TablePoint {
+  double shear_rate = 0.0;           ///< 1/s, sqrt(2 D:D)
+  double kinematic_viscosity = 0.0;  ///< m2/s
+};
+
+/// Papanastasiou's apparent viscosity over density, (eta + tau0 (1 - exp(-m rate)) / rate) / rho, m2/s; its
+/// limit eta + tau0 m at rest.
+double papanastasiou_viscosity(const scenes::Material&, double shear_rate);
+
+/// The law as a table that linear interpolation between its rows, and its last row beyond them, reproduces to
+/// 0.1 %.
+std::vector<TablePoint> papanastasiou_table(const scenes::Material&);
+
+/// The kinematic viscosity below the critical shear rate, (eta + tau0 / critical_shear_rate) / rho, m2/s:
+/// with it HerschelBulkley's min(nu0, tau0 / rate + k) changes branch at that rate, with a continuous stress.
+double bi_viscous_viscosity_at_rest(const scenes::Material&);
+
+}  // namespace flowrest::foam

@@ -1,0 +1,140 @@
+#include "foamCases/wedge_gauge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace flowrest::foam {
+
+namespace {
+
+constexpr double half_full = 0.5;
+/// Cells with more air than this show the air's shear rate, not the concrete's.
+constexpr double nearly_full = 0.9;
+
+/// One velocity component on the grid, with its values on faces.
+class Component {
+ public:
+  Component(const WedgeGrid& grid, const std::vector<double>& velocity, std::size_t component)
+      : grid_(grid), velocity_(velocity), component_(component) {}
+
+  double at(int ring, int row) const { return velocity_[3 * grid_.index(ring, row) + component_]; }
+
+  /// Derivative along the radius; `at_axis` and `at_rim` are the values on the outermost faces.
+  double along_radius(int ring, int row, double at_axis, double at_rim) const {
+    const double inner = ring == 0 ? at_axis : 0.5 * (at(ring - 1, row) + at(ring, row));
+    const double outer = ring + 1 == grid_.rings ? at_rim : 0.5 * (at(ring, row) + at(ring + 1, row));
+    return (outer - inner) / grid_.ring_width;
+  }
+
+  /// Derivative upwards; `at_base` is the value on the base; nothing changes across the open top.
+  double upwards(int ring, int row, double at_base) const {
+    const double below = row == 0 ? at_base : face_above(ring, row - 1);
+    const double above = row + 1 == grid_.rows() ? at(ring, row) : face_above(ring, row);
+    return (above - below) / grid_.row_height(row);
+  }
+
+ private:
+  double face_above(int ring, int row) const {
+    const double below = grid_.row_height(row);
+    const double above = grid_.row_height(row + 1);
+    return (at(ring, row) * above + at(ring, row + 1) * below) / (below + above);
+  }
+
+  const WedgeGrid& grid_;
+  const std::vector<double>& velocity_;
+  std::size_t component_;
+};
+
+double trapped_air_in_column(const WedgeGrid& grid, const std::vector<double>& fraction, int ring) {
+  int top = grid.rows() - 1;
+  while (top >= 0 && fraction[grid.index(ring, top)] < half_full) --top;
+  double air = 0.0;
+  for (int row = 0; row < top; ++row)
+    air += (1.0 - fraction[grid.index(ring, row)]) * grid.cell_volume(ring, row);
+  return air;
+}
+
+double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction) {
+  for (int ring = grid.rings - 1; ring >= 0; --ring) {
+    const double inner = fraction[grid.index(ring, 0)];
+    if (inner <= half_full) continue;
+    const double outer = ring + 1 == grid.rings ? inner : fraction[grid.index(ring + 1, 0)];
+    const double share = outer < inner ? (inner - half_full) / (inner - outer) : 0.0;
+    return 2.0 * (grid.ring_centre(ring) + share * grid.ring_width);
+  }
+  return 0.0;
+}
+
+/// The value below which 99 % of the weight lies.
+double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
+  std::sort(value_and_weight.begin(), value_and_weight.end());
+  double total = 0.0;
+  for (const auto& [value, weight] : value_and_weight) total += weight;
+  double below = 0.0;
+  for (const auto& [value, weight] : value_and_weight) {
+    below += weight;
+    if (below >= 0.99 * total) return value;
+  }
+  return 0.0;
+}
+
+double concrete_shear_rate(const WedgeGrid& grid, const SlumpFields& fields, bool slip) {
+  const auto rate = shear_rate(grid, fields.velocity, slip);
+  std::vector<std::pair<double, double>> in_concrete;
+  for (int row = 0; row < grid.rows(); ++row)
+    for (int ring = 0; ring < grid.rings; ++ring) {
+      const auto cell = grid.index(ring, row);
+      if (fields.fraction[cell] >= nearly_full)
+        in_concrete.emplace_back(rate[cell], fields.fraction[cell] * grid.cell_volume(ring, row));
+    }
+  return percentile_99(std::move(in_concrete));
+}
+
+}  // namespace
+
+std::vector<double> shear_rate(const WedgeGrid& grid, const std::vector<double>& velocity, bool slip) {
+  const Component radial(grid, velocity, 0);
+  const Component vertical(grid, velocity, 2);
+  std::vector<double> rate(grid.cells());
+  for (int row = 0; row < grid.rows(); ++row)
+    for (int ring = 0; ring < grid.rings; ++ring) {
+      const double u = radial.at(ring, row);
+      const double w = vertical.at(ring, row);
+      // No flow crosses the axis, the rim and the base; along the rim and a slip base it is free.
+      const double radial_strain = radial.along_radius(ring, row, 0.0, 0.0);
+      const double hoop_strain = u / grid.ring_centre(ring);
+      const double vertical_strain = vertical.upwards(ring, row, 0.0);
+      const double shear = radial.upwards(ring, row, slip ? u : 0.0) + vertical.along_radius(ring, row, w, w);
+      rate[grid.index(ring, row)] =
+          std::sqrt(2.0 * (radial_strain * radial_strain + hoop_strain * hoop_strain +
+                           vertical_strain * vertical_strain) +
+                    shear * shear);
+    }
+  return rate;
+}
+
+SlumpGauges gauge_slump(const WedgeGrid& grid, const SlumpFields& fields, double density, bool slip) {
+  SlumpGauges gauges;
+  for (int ring = 0; ring < grid.rings; ++ring) {
+    double depth = 0.0;
+    for (int row = 0; row < grid.rows(); ++row) {
+      const auto cell = grid.index(ring, row);
+      const double* u = &fields.velocity[3 * cell];
+      depth += fields.fraction[cell] * grid.row_height(row);
+      gauges.kinetic_energy += 0.5 * density * fields.fraction[cell] * grid.cell_volume(ring, row) *
+                               (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    }
+    gauges.radius.push_back(grid.ring_centre(ring));
+    gauges.depth.push_back(depth);
+    gauges.volume += depth * grid.ring_area(ring);
+    gauges.trapped_air += trapped_air_in_column(grid, fields.fraction, ring);
+  }
+  gauges.rim_depth = gauges.depth.back();
+  gauges.front = front_diameter(grid, fields.fraction);
+  gauges.shear_rate_p99 = concrete_shear_rate(grid, fields, slip);
+  return gauges;
+}
+
+}  // namespace flowrest::foam

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "foamCases/wedge_grid.h"
+
+/// What is measured of a slump's fields on the wedge grid, scaled to the full circle.
+namespace flowrest::foam {
+
+/// Fields at one time, a value to a cell; the velocity is x (radial), y, z (upwards).
+struct SlumpFields {
+  std::vector<double> fraction;
+  std::vector<double> velocity;
+};
+
+struct SlumpGauges {
+  std::vector<double> radius;   ///< m, ring centres
+  std::vector<double> depth;    ///< m, concrete volume per plan area of each ring
+  double volume = 0.0;          ///< m3, of concrete
+  double kinetic_energy = 0.0;  ///< J, of the concrete alone
+  double shear_rate_p99 =
+      0.0;             ///< 1/s, the 99th percentile by volume over cells at least 90 % full; 0 without any
+  double front = 0.0;  ///< m, twice the radius at which the base row is half full; 0 where it nowhere is
+  double trapped_air = 0.0;  ///< m3, air below concrete: under the topmost cell of a column that is half full
+  double rim_depth = 0.0;    ///< m, depth in the outermost ring
+};
+
+/// `slip` says that the base does not hold the concrete back, which the shear rate in the lowest row needs.
+SlumpGauges gauge_slump(const WedgeGrid&, const SlumpFields&, double density, bool slip);
+
+/// Shear rate sqrt(2 D:D) in every cell, with faces interpolated linearly as the case's schemes do. 1/s
+std::vector<double> shear_rate(const WedgeGrid&, const std::vector<double>& velocity, bool slip);
+
+}  // namespace flowrest::foam
