@@ -1,26 +1,13 @@
 #include <fmt/format.h>
 
-#include "scenes/schema.h"
+#include "scenes/settings.h"
 #include "scenes/text.h"
 
 namespace flowrest::scenes {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
 
-/// Calls `use(key, setting)` for every resolved setting of a scene, in the order of the schema.
-template <class Use>
-void for_each_setting(const Scene& scene, Use use) {
-  Draft draft;
-  draft.scene = scene;
-  for (const Key& key : keys()) {
-    if (key.only_kind && *key.only_kind != scene.kind) continue;
-    if (key.section == "thixotropy" && !scene.thixotropy) continue;
-    const Json setting = key.write(draft);
-    if (!setting.is_null()) use(key, setting);
-  }
-}
+namespace {
 
 /// A TOML basic string.
 std::string toml_string(const std::string& text) {
@@ -38,6 +25,8 @@ std::string toml_string(const std::string& text) {
   return string;
 }
 
+}  // namespace
+
 std::string toml_value(const Json& value) {
   if (value.is_string()) return toml_string(value.get<std::string>());
   if (value.is_number_float()) return exact_text(value.get<double>());
@@ -47,28 +36,42 @@ std::string toml_value(const Json& value) {
   return fmt::format("[{}]", joined(items));
 }
 
-}  // namespace
+std::vector<Setting> settings_of(const Scene& scene) {
+  Draft draft;
+  draft.scene = scene;
+  std::vector<Setting> settings;
+  for (const Key& key : keys()) {
+    if (key.only_kind && *key.only_kind != scene.kind) continue;
+    if (key.section == "thixotropy" && !scene.thixotropy) continue;
+    Json value = key.write(draft);
+    if (!value.is_null()) settings.push_back({&key, std::move(value)});
+  }
+  return settings;
+}
+
+nlohmann::ordered_json settings_json(const Scene& scene) {
+  Json json;
+  for (const Setting& setting : settings_of(scene)) {
+    const Key& key = *setting.key;
+    (key.section.empty() ? json : json[key.section])[key.name] = setting.value;
+  }
+  return json;
+}
 
 std::string resolved_toml(const Scene& scene) {
   std::string text;
   std::string section;
-  for_each_setting(scene, [&](const Key& key, const Json& setting) {
-    if (key.section != section) {
-      section = key.section;
+  for (const auto& [key, value] : settings_of(scene)) {
+    if (key->section != section) {
+      section = key->section;
       text += fmt::format("\n[{}]\n", section);
     }
-    text +=
-        fmt::format("{} = {}{}{}\n", key.name, toml_value(setting), key.unit.empty() ? "" : "  # ", key.unit);
-  });
+    text += fmt::format("{} = {}{}{}\n", key->name, toml_value(value), key->unit.empty() ? "" : "  # ",
+                        key->unit);
+  }
   return text;
 }
 
-std::string resolved_json(const Scene& scene) {
-  Json json;
-  for_each_setting(scene, [&](const Key& key, const Json& setting) {
-    (key.section.empty() ? json : json[key.section])[key.name] = setting;
-  });
-  return json.dump(2);
-}
+std::string resolved_json(const Scene& scene) { return settings_json(scene).dump(2); }
 
 }  // namespace flowrest::scenes

@@ -93,9 +93,8 @@ double occupied_cells(const Scene& scene) {
   const double half_section = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
   switch (scene.geometry.dimension) {
     case Dimension::axisymmetric:
+    case Dimension::plane:  // by symmetry, half of the section
       return half_section / (cell * cell);
-    case Dimension::plane:
-      return 2.0 * half_section / (cell * cell);
     case Dimension::quarter:
       return 0.25 * cone.volume() / (cell * cell * cell);
     case Dimension::full:
@@ -108,7 +107,8 @@ double occupied_cells(const Scene& scene) {
 
 MpmEstimate estimate_mpm(const Scene& scene) {
   MpmEstimate estimate;
-  estimate.cells = std::max(1.0, std::ceil(occupied_cells(scene)));
+  constexpr double round_off = 1e-9;
+  estimate.cells = std::max(1.0, std::ceil(occupied_cells(scene) * (1.0 - round_off)));
   estimate.particles = estimate.cells;
   for (const int along_an_axis : scene.mpm.particles_per_cell) estimate.particles *= along_an_axis;
   const StepLimits limits = step_limits(scene);

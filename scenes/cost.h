@@ -1,0 +1,26 @@
+#pragma once
+
+#include "scenes/scene.h"
+
+/// What a run is expected to cost, from rates that are assumptions until they are measured on the machine at
+/// hand.
+namespace flowrest::scenes {
+
+struct Cost {
+  double memory = 0.0;       ///< bytes
+  double cpu_seconds = 0.0;  ///< to time.end; less where a run stops at rest
+};
+
+/// Of one run with the material point solver.
+Cost mpm_cost(const Scene&);
+
+/// The OpenFOAM run of a slump: a wedge one cell thick.
+struct FoamEstimate {
+  double cells = 0.0;
+  double steps = 0.0;
+  double step = 0.0;  ///< s
+  Cost cost;
+};
+FoamEstimate estimate_foam(const Scene&);
+
+}  // namespace flowrest::scenes
