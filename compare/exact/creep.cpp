@@ -7,7 +7,8 @@ namespace flowrest::compare::exact {
 
 namespace {
 
-/// int_0^{tau(last)} weight(tau, g) dtau along the flow curve, by trapezia in the shear rate, where it is smooth.
+/// int_0^{tau(last)} weight(tau, g) dtau along the flow curve, by trapezia in the shear rate, where it is
+/// smooth.
 template <class Weight>
 double along_the_flow_curve(const RegularisedFluid& fluid, double last_shear_rate, Weight weight) {
   constexpr int panels = 20000;
@@ -26,7 +27,8 @@ double along_the_flow_curve(const RegularisedFluid& fluid, double last_shear_rat
 }  // namespace
 
 double RegularisedFluid::stress(double rate) const {
-  if (law == Law::bi_viscous) return std::min(largest_viscosity() * rate, yield_stress + plastic_viscosity * rate);
+  if (law == Law::bi_viscous)
+    return std::min(largest_viscosity() * rate, yield_stress + plastic_viscosity * rate);
   return plastic_viscosity * rate - yield_stress * std::expm1(-regularisation_time * rate);
 }
 
@@ -38,7 +40,8 @@ double RegularisedFluid::shear_rate(double wanted) const {
   // The flow curve is concave, so Newton's steps from zero approach the root from below and never pass it.
   double rate = 0.0;
   for (int i = 0; i < 200; ++i) {
-    const double slope = plastic_viscosity + regularisation_time * yield_stress * std::exp(-regularisation_time * rate);
+    const double slope =
+        plastic_viscosity + regularisation_time * yield_stress * std::exp(-regularisation_time * rate);
     const double step = (wanted - stress(rate)) / slope;
     rate += step;
     if (std::abs(step) <= 1e-14 * rate) break;
@@ -49,7 +52,8 @@ double RegularisedFluid::shear_rate(double wanted) const {
 double film_velocity(const RegularisedFluid& fluid, double depth, double base_stress) {
   if (!(base_stress > 0.0)) return 0.0;
   return depth / (base_stress * base_stress) *
-         along_the_flow_curve(fluid, fluid.shear_rate(base_stress), [](double tau, double g) { return tau * g; });
+         along_the_flow_curve(fluid, fluid.shear_rate(base_stress),
+                              [](double tau, double g) { return tau * g; });
 }
 
 double spread_creep(const RegularisedFluid& fluid, double depth_at_half_radius) {
@@ -58,7 +62,9 @@ double spread_creep(const RegularisedFluid& fluid, double depth_at_half_radius) 
 
 double duct_creep(const RegularisedFluid& fluid, double height, double force) {
   if (!(force > 0.0)) return 0.0;
-  return along_the_flow_curve(fluid, fluid.shear_rate(0.5 * force * height), [](double, double g) { return g; }) / force;
+  return along_the_flow_curve(fluid, fluid.shear_rate(0.5 * force * height),
+                              [](double, double g) { return g; }) /
+         force;
 }
 
 }  // namespace flowrest::compare::exact

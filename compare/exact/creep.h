@@ -12,20 +12,21 @@ struct RegularisedFluid {
   double regularisation_time = 0.0;  ///< m, s; of the bi-viscous law the inverse of its critical shear rate
 
   double largest_viscosity() const { return plastic_viscosity + regularisation_time * yield_stress; }
-  /// tau = eta g + tau0 (1 - exp(-m g)), or min(eta0 g, tau0 + eta g) with eta0 = eta + m tau0; g = sqrt(2 D:D).
+  /// tau = eta g + tau0 (1 - exp(-m g)), or min(eta0 g, tau0 + eta g) with eta0 = eta + m tau0; g = sqrt(2
+  /// D:D).
   double stress(double shear_rate) const;
   /// The inverse of stress().
   double shear_rate(double stress) const;
 };
 
-/// Depth-mean velocity of a film of `depth` whose base carries `base_stress`: (depth/base_stress^2) int tau g dtau. On a
-/// bi-viscous fluid at the yield stress it is tau0 depth/(3 eta0). m/s
+/// Depth-mean velocity of a film of `depth` whose base carries `base_stress`: (depth/base_stress^2) int tau g
+/// dtau. On a bi-viscous fluid at the yield stress it is tau0 depth/(3 eta0). m/s
 double film_velocity(const RegularisedFluid&, double depth, double base_stress);
 
-/// Rate at which the spread (twice the radius) of an arrested slump of radius R goes on growing. The base of the arrested
-/// profile carries the yield stress everywhere, hence the depth-mean velocity u at r = R/2 by film_velocity. If the shape
-/// stays similar while it creeps, h = H f(r/R) with H R^2 constant, continuity gives u = r (dR/dt)/R, so d(2R)/dt = 4 u(R/2).
-/// m/s
+/// Rate at which the spread (twice the radius) of an arrested slump of radius R goes on growing. The base of
+/// the arrested profile carries the yield stress everywhere, hence the depth-mean velocity u at r = R/2 by
+/// film_velocity. If the shape stays similar while it creeps, h = H f(r/R) with H R^2 constant, continuity
+/// gives u = r (dR/dt)/R, so d(2R)/dt = 4 u(R/2). m/s
 double spread_creep(const RegularisedFluid&, double depth_at_half_radius);
 
 /// Velocity of the middle of a duct under a steady force (N/m3): (1/F) int_0^{F H/2} g dtau. m/s

@@ -25,7 +25,8 @@ Bingham material_of(const Scene& scene) {
   throw RunError(fmt::format("{}: this scene has no exact solution here: {}", scene.path.string(), why));
 }
 
-/// Points from the middle to the edge, closer towards the edge where the depth falls steeply, and one just beyond it.
+/// Points from the middle to the edge, closer towards the edge where the depth falls steeply, and one just
+/// beyond it.
 std::vector<double> points_to(double edge) {
   constexpr int count = 200;
   std::vector<double> points;
@@ -38,8 +39,8 @@ std::vector<double> points_to(double edge) {
 }
 
 template <class Profile>
-ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory, const Profile& profile, double edge,
-                     double volume, const std::string& label, const std::string& source) {
+ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory, const Profile& profile,
+                     double edge, double volume, const std::string& label, const std::string& source) {
   runs::RunWriter writer(directory, scene, "exact");
   std::vector<double> coordinate = points_to(edge), depth;
   for (const double r : coordinate) depth.push_back(profile.depth(r));
@@ -52,8 +53,9 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
   writer.history(std::vector{scene.time.end, 1000.0 * spread, 1000.0 * profile.depth(0.0), volume});
   writer.profile(scene.time.end, coordinate, depth);
   writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
-  return {directory, fmt::format("{}: spread {:.1f} mm at 3 mm depth ({:.1f} mm at its foot), centre {:.1f} mm", label,
-                                 1000.0 * spread, 2000.0 * edge, 1000.0 * profile.depth(0.0))};
+  return {directory,
+          fmt::format("{}: spread {:.1f} mm at 3 mm depth ({:.1f} mm at its foot), centre {:.1f} mm", label,
+                      1000.0 * spread, 2000.0 * edge, 1000.0 * profile.depth(0.0))};
 }
 
 std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::path& directory) {
@@ -65,8 +67,11 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
   if (!(scene.forces.gravity > 0.0)) refuse(scene, "without gravity nothing slumps");
   const auto must_spread = [&](double radius) {
     if (radius < cone.cone_radius_bottom)
-      refuse(scene, fmt::format("the yield stress is so high that the slender profile (radius {:.0f} mm) would be narrower "
-                                "than the cone (foot {:.0f} mm)", 1000.0 * radius, 1000.0 * cone.cone_radius_bottom));
+      refuse(scene,
+             fmt::format(
+                 "the yield stress is so high that the slender profile (radius {:.0f} mm) would be narrower "
+                 "than the cone (foot {:.0f} mm)",
+                 1000.0 * radius, 1000.0 * cone.cone_radius_bottom));
   };
   if (scene.geometry.dimension == scenes::Dimension::plane) {
     const double half_area = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
@@ -78,18 +83,22 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
   const auto leading = leading_order_slump(material, scene.forces.gravity, cone.volume());
   const auto second = second_order_slump(material, scene.forces.gravity, cone.volume());
   must_spread(leading.radius);
-  return {write_slump(scene, directory / "leading-order", leading, leading.radius, leading.volume(),
-                      "exact, leading order", "Yu et al. 2026, Eq. 51, with h = sqrt(2 tau0 (R - r)/(rho g))"),
-          write_slump(scene, directory / "second-order", second, second.radius, second.volume(), "exact, second order",
-                      "h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)), a = 1.36 tau0/(rho g)")};
+  return {
+      write_slump(scene, directory / "leading-order", leading, leading.radius, leading.volume(),
+                  "exact, leading order", "Yu et al. 2026, Eq. 51, with h = sqrt(2 tau0 (R - r)/(rho g))"),
+      write_slump(scene, directory / "second-order", second, second.radius, second.volume(),
+                  "exact, second order",
+                  "h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)), a = 1.36 tau0/(rho g)")};
 }
 
 std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path& directory) {
   const Bingham material = material_of(scene);
   const double height = scene.duct().height;
   if (scene.thixotropy) refuse(scene, "a thixotropic yield stress changes with the flow's history");
-  if (scene.base != scenes::Wall::no_slip) refuse(scene, "the steady profile holds between plates without slip");
-  if (!(material.plastic_viscosity > 0.0)) refuse(scene, "without a plastic viscosity the flow has no steady state");
+  if (scene.base != scenes::Wall::no_slip)
+    refuse(scene, "the steady profile holds between plates without slip");
+  if (!(material.plastic_viscosity > 0.0))
+    refuse(scene, "without a plastic viscosity the flow has no steady state");
   if (scene.forces.body_force.empty()) refuse(scene, "no body force drives the duct");
 
   runs::RunWriter writer(directory / "steady", scene, "exact");
@@ -99,12 +108,14 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
   writer.history_columns({"time_s", "plug_velocity_m_s", "mean_velocity_m_s"});
   std::vector<double> coordinate, velocity;
   constexpr int points = 401;
-  for (int i = 0; i < points; ++i) coordinate.push_back(height * (static_cast<double>(i) / (points - 1) - 0.5));
+  for (int i = 0; i < points; ++i)
+    coordinate.push_back(height * (static_cast<double>(i) / (points - 1) - 0.5));
   std::string summary = "exact, steady:";
   const auto& force = scene.forces.body_force;
   double norm = 0.0;
   for (std::size_t stage = 0; stage < force.size(); ++stage) {
-    const double end = stage + 1 < force.size() ? std::min(force[stage + 1].first, scene.time.end) : scene.time.end;
+    const double end =
+        stage + 1 < force.size() ? std::min(force[stage + 1].first, scene.time.end) : scene.time.end;
     if (!(end > force[stage].first)) break;
     const DuctFlow flow{material, height, force[stage].second};
     velocity.clear();
@@ -129,10 +140,13 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
 
 std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory) {
   if (std::filesystem::exists(directory / "run.json"))
-    throw RunError(fmt::format("{}: is itself a run; name the folder that shall hold the exact runs", directory.string()));
+    throw RunError(fmt::format("{}: is itself a run; name the folder that shall hold the exact runs",
+                               directory.string()));
   switch (scene.kind) {
-    case scenes::Kind::slump: return write_slumps(scene, directory);
-    case scenes::Kind::duct: return write_duct(scene, directory);
+    case scenes::Kind::slump:
+      return write_slumps(scene, directory);
+    case scenes::Kind::duct:
+      return write_duct(scene, directory);
   }
   refuse(scene, "none is known for this kind of scene");
 }

@@ -14,9 +14,9 @@ struct ExactRun {
   std::string summary;
 };
 
-/// Writes every exact or asymptotic solution the scene has into a run directory of its own below `directory`: a slump
-/// leaves `leading-order` and `second-order` (a plane one only the first), a duct `steady`. Nothing is written unless all
-/// can be.
+/// Writes every exact or asymptotic solution the scene has into a run directory of its own below `directory`:
+/// a slump leaves `leading-order` and `second-order` (a plane one only the first), a duct `steady`. Nothing
+/// is written of a scene that has none.
 /// @throws runs::RunError where the scene has no such solution, saying why.
 std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory);
 

@@ -38,7 +38,8 @@ ArrestedSlump leading_order_slump(const Bingham& material, double gravity, doubl
 ArrestedSlump second_order_slump(const Bingham& material, double gravity, double volume) {
   ArrestedSlump slump = leading_order_slump(material, gravity, volume);
   slump.nose = 1.36 * slump.length;
-  // The volume grows with the radius, and the nose only shortens the slump: bisection between 0 and the leading order.
+  // The volume grows with the radius, and the nose only shortens the slump: bisection between 0 and the
+  // leading order.
   double low = 0.0, high = slump.radius;
   for (int i = 0; i < 200 && low < high; ++i) {
     slump.radius = 0.5 * (low + high);
@@ -51,7 +52,9 @@ double ArrestedPlaneSlump::depth(double x) const {
   return std::abs(x) > half_width ? 0.0 : std::sqrt(2.0 * length * (half_width - std::abs(x)));
 }
 
-double ArrestedPlaneSlump::half_area() const { return 2.0 / 3.0 * std::sqrt(2.0 * length) * std::pow(half_width, 1.5); }
+double ArrestedPlaneSlump::half_area() const {
+  return 2.0 / 3.0 * std::sqrt(2.0 * length) * std::pow(half_width, 1.5);
+}
 
 double ArrestedPlaneSlump::spread(double threshold) const {
   return 2.0 * std::max(0.0, half_width - threshold * threshold / (2.0 * length));
@@ -69,7 +72,8 @@ double DuctFlow::plug_half_width() const {
 double DuctFlow::velocity(double y) const {
   const double outer = std::clamp(std::abs(y), plug_half_width(), 0.5 * height);
   // Yu et al. 2026, Eqs. 49 and 50.
-  return (force * (0.25 * height * height - outer * outer) - 2.0 * material.yield_stress * (0.5 * height - outer)) /
+  return (force * (0.25 * height * height - outer * outer) -
+          2.0 * material.yield_stress * (0.5 * height - outer)) /
          (2.0 * material.plastic_viscosity);
 }
 

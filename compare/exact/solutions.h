@@ -12,8 +12,9 @@ struct Bingham {
   double plastic_viscosity = 0.0;  ///< Pa s
 };
 
-/// The arrested, slender slump whose base carries the yield stress everywhere: h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)).
-/// a = 0 is the leading order in H/R. Quasi-static: inertia, which carries a real slump past it, has no part in it.
+/// The arrested, slender slump whose base carries the yield stress everywhere: h = a + sqrt(a^2 + 2 tau0 (R -
+/// r)/(rho g)). a = 0 is the leading order in H/R. Quasi-static: inertia, which carries a real slump past it,
+/// has no part in it.
 struct ArrestedSlump {
   double length = 0.0;  ///< tau0/(rho g), m
   double nose = 0.0;    ///< a, m: half the depth of the blunt nose
@@ -25,17 +26,19 @@ struct ArrestedSlump {
   double spread(double threshold) const;
 };
 
-/// Leading order: R = (225 rho g V^2 / (128 pi^2 tau0))^(1/5), Yu et al. 2026, Eq. 51; the profile printed there beside it
-/// is linear in R - r, which has the wrong units: the one that carries tau0 at the base is its square root.
+/// Leading order: R = (225 rho g V^2 / (128 pi^2 tau0))^(1/5), Yu et al. 2026, Eq. 51; the profile printed
+/// there beside it is linear in R - r, which has the wrong units: the one that carries tau0 at the base is
+/// its square root.
 ArrestedSlump leading_order_slump(const Bingham&, double gravity, double volume);
 
-/// With the extensional stress of the pseudo-plug above the sheared base, which adds to the hydrostatic thrust and shortens
-/// the slump: a = 1.36 tau0/(rho g), R from the volume.
+/// With the extensional stress of the pseudo-plug above the sheared base, which adds to the hydrostatic
+/// thrust and shortens the slump: a = 1.36 tau0/(rho g), R from the volume.
 ArrestedSlump second_order_slump(const Bingham&, double gravity, double volume);
 
-/// The arrested slump in plane flow, one half: h = sqrt(2 tau0 (X - x)/(rho g)), X = (9 rho g A^2/(8 tau0))^(1/3).
+/// The arrested slump in plane flow, one half: h = sqrt(2 tau0 (X - x)/(rho g)), X = (9 rho g A^2/(8
+/// tau0))^(1/3).
 struct ArrestedPlaneSlump {
-  double length = 0.0;    ///< tau0/(rho g), m
+  double length = 0.0;      ///< tau0/(rho g), m
   double half_width = 0.0;  ///< X, m
   double depth(double x) const;
   double half_area() const;  ///< m2
@@ -43,22 +46,24 @@ struct ArrestedPlaneSlump {
 };
 ArrestedPlaneSlump plane_slump(const Bingham&, double gravity, double half_area);
 
-/// Steady flow between plates `height` apart under a body force (N/m3); y from the mid-plane. Yu et al. 2026, Eqs. 48-50.
+/// Steady flow between plates `height` apart under a body force (N/m3); y from the mid-plane. Yu et al. 2026,
+/// Eqs. 48-50.
 struct DuctFlow {
   Bingham material;
   double height = 0.0;
   double force = 0.0;
 
-  double plug_half_width() const;  ///< y0 = tau0/F, at most half the height, m
-  double velocity(double y) const; ///< m/s
-  double plug_velocity() const;    ///< m/s; 0 where the force is below 2 tau0/height
-  double mean_velocity() const;    ///< m/s
-  double l2_norm() const;          ///< sqrt of the integral of velocity^2 over the height, m^1.5/s
+  double plug_half_width() const;   ///< y0 = tau0/F, at most half the height, m
+  double velocity(double y) const;  ///< m/s
+  double plug_velocity() const;     ///< m/s; 0 where the force is below 2 tau0/height
+  double mean_velocity() const;     ///< m/s
+  double l2_norm() const;           ///< sqrt of the integral of velocity^2 over the height, m^1.5/s
 };
 
-/// Upper bound on the time a duct flow of L2 norm `l2_norm` needs to stop under a force below yield: integrating
-/// d|u|/dt <= -a |u| - b, a = pi^2 eta/(rho H^2), b = 2 (tau0 - F H/2)/(rho sqrt(H)), which the energy balance gives with
-/// Poincare's inequality and max|u| <= (1/2) int|u'|. Infinite where the force does not stop it. s
+/// Upper bound on the time a duct flow of L2 norm `l2_norm` needs to stop under a force below yield:
+/// integrating d|u|/dt <= -a |u| - b, a = pi^2 eta/(rho H^2), b = 2 (tau0 - F H/2)/(rho sqrt(H)), which the
+/// energy balance gives with Poincare's inequality and max|u| <= (1/2) int|u'|. Infinite where the force does
+/// not stop it. s
 double stopping_time_bound(const Bingham&, double height, double force, double l2_norm);
 
 }  // namespace flowrest::compare::exact

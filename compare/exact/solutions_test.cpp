@@ -39,7 +39,8 @@ TEST(ArrestedSlump, LeadingOrderOfTheRousselScene) {
 TEST(ArrestedSlump, LeadingOrderOfOtherYieldStresses) {
   const std::pair<double, double> known[] = {{25.0, 689.2}, {100.0, 522.3}, {200.0, 454.7}};
   for (const auto& [yield_stress, spread_mm] : known)
-    EXPECT_NEAR(2000.0 * leading_order_slump(concrete(yield_stress), 9.81, cone_volume).radius, spread_mm, 0.06)
+    EXPECT_NEAR(2000.0 * leading_order_slump(concrete(yield_stress), 9.81, cone_volume).radius, spread_mm,
+                0.06)
         << "yield stress " << yield_stress;
 }
 
@@ -62,8 +63,8 @@ TEST(ArrestedSlump, TheBaseCarriesTheYieldStress) {
 }
 
 TEST(ArrestedSlump, SpreadAtAThresholdInvertsTheProfile) {
-  for (const auto& slump :
-       {leading_order_slump(concrete(50.0), 9.81, cone_volume), second_order_slump(concrete(50.0), 9.81, cone_volume)}) {
+  for (const auto& slump : {leading_order_slump(concrete(50.0), 9.81, cone_volume),
+                            second_order_slump(concrete(50.0), 9.81, cone_volume)}) {
     EXPECT_NEAR(slump.depth(0.5 * slump.spread(0.02)), 0.02, 1e-12);
     EXPECT_EQ(slump.spread(0.05), 0.0);
   }
@@ -82,8 +83,10 @@ TEST(ArrestedPlaneSlump, HoldsItsAreaAndFollowsTheKnownLength) {
 }
 
 TEST(DuctFlow, PlugAndMeanVelocities) {
-  const double known[][3] = {
-      {10.0, 2.000833, 1.347228}, {50.0, 1.687500, 1.181250}, {100.0, 1.333333, 0.977778}, {200.0, 0.750000, 0.600000}};
+  const double known[][3] = {{10.0, 2.000833, 1.347228},
+                             {50.0, 1.687500, 1.181250},
+                             {100.0, 1.333333, 0.977778},
+                             {200.0, 0.750000, 0.600000}};
   for (const auto& [yield_stress, plug, mean] : known) {
     const DuctFlow flow{{2000.0, yield_stress, 30.0}, 0.5, 2000.0};
     EXPECT_NEAR(flow.plug_velocity(), plug, 1e-6) << "yield stress " << yield_stress;
@@ -148,9 +151,11 @@ TEST(Creep, OfTheArrestedRousselSlump) {
 }
 
 TEST(Creep, OfTheSteppedDownDuct) {
-  const std::pair<double, double> known[] = {{10.0, 1.69e-2}, {100.0, 1.84e-3}, {1e3, 1.86e-4}, {1e4, 1.86e-5}};
+  const std::pair<double, double> known[] = {
+      {10.0, 1.69e-2}, {100.0, 1.84e-3}, {1e3, 1.86e-4}, {1e4, 1.86e-5}};
   for (const auto& [m, velocity] : known)
-    EXPECT_NEAR(duct_creep({RegularisedFluid::Law::papanastasiou, 100.0, 30.0, m}, 0.5, 360.0) / velocity, 1.0, 4e-3)
+    EXPECT_NEAR(duct_creep({RegularisedFluid::Law::papanastasiou, 100.0, 30.0, m}, 0.5, 360.0) / velocity,
+                1.0, 4e-3)
         << "m " << m;
   // A Newtonian duct: F H^2/(8 eta).
   EXPECT_NEAR(duct_creep({RegularisedFluid::Law::papanastasiou, 0.0, 30.0, 0.0}, 0.5, 360.0), 0.375, 1e-9);

@@ -1,0 +1,98 @@
+#include "compare/commands.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compare/comparison.h"
+#include "compare/exact/exact_run.h"
+#include "runs/run_directory.h"
+#include "scenes/scene.h"
+
+namespace flowrest::compare {
+
+namespace {
+
+void add_exact(CLI::App& app) {
+  struct Arguments {
+    std::string scene, output;
+    scenes::Overrides overrides;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("exact", "Write the scene's exact or asymptotic solutions as runs");
+  command->add_option("SCENE", arguments->scene, "A scene file, or the name of one in scenes/")->required();
+  command->add_option("-o,--output", arguments->output,
+                      "Folder that receives a run for each solution (out/SCENE/exact)");
+  command->add_option("--set", arguments->overrides.set, "Override a key: material.yield_stress=100")
+      ->take_all();
+  command->add_flag("--json", arguments->json, "Print a machine-readable last line");
+  command->callback([arguments] {
+    const auto scene = scenes::load_scene(arguments->scene, arguments->overrides);
+    const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
+    nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
+    for (const auto& run : exact::write_exact_runs(scene, output)) {
+      fmt::print("{}\n  {}\n", run.summary, run.directory.string());
+      json["runs"].push_back(run.directory.string());
+    }
+    if (arguments->json) fmt::print("{}\n", json.dump());
+  });
+}
+
+void add_compare(CLI::App& app) {
+  struct Arguments {
+    std::vector<std::string> runs;
+    std::string output = "report";
+    double spread_rate_mm = 0.0;
+    Options options;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  arguments->spread_rate_mm = 1e3 * arguments->options.rest_spread_rate;
+  CLI::App* command = app.add_subcommand("compare", "Compare runs and write a report");
+  command->add_option("RUN", arguments->runs, "Run directories, or folders of them")->required();
+  command->add_option("-o,--output", arguments->output, "Folder of the report")->capture_default_str();
+  command
+      ->add_option("--rest-shear-rate", arguments->options.rest_shear_rate,
+                   "At rest once the 99th percentile of the shear rate stays below, 1/s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--rest-spread-rate", arguments->spread_rate_mm,
+                   "At rest once the spread grows by less, mm/s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--residual-window", arguments->options.residual_window,
+                   "The last seconds of a run over which its residual speed is taken, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Print a machine-readable last line");
+  command->callback([arguments] {
+    arguments->options.rest_spread_rate = 1e-3 * arguments->spread_rate_mm;
+    const std::vector<std::filesystem::path> named(arguments->runs.begin(), arguments->runs.end());
+    const Comparison comparison = compare_runs(find_runs(named), arguments->options);
+    write_comparison(comparison, arguments->output);
+    for (const std::string& note : comparison.notes) fmt::print("Note: {}\n", note);
+    for (const std::string& finding : comparison.findings) fmt::print("{}\n", finding);
+    const std::string page =
+        (std::filesystem::absolute(arguments->output) / "index.html").lexically_normal().string();
+    fmt::print("\nThe report: {}\n", page);
+    if (arguments->json) {
+      nlohmann::ordered_json json = {
+          {"report", page}, {"runs", comparison.runs.size()}, {"findings", comparison.findings}};
+      fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    }
+  });
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app) {
+  add_exact(app);
+  add_compare(app);
+}
+
+}  // namespace flowrest::compare

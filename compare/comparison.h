@@ -1,0 +1,125 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/measures/series.h"
+#include "runs/run_directory.h"
+
+/// Compares run directories, whoever made them: measures of each, differences between them, and what they say
+/// in words.
+namespace flowrest::compare {
+
+/// What the measures are taken by. Every threshold is named in comparison.json.
+struct Options {
+  double rest_shear_rate = 0.01;   ///< 1/s: at rest once the 99th percentile of the shear rate stays below
+  double rest_spread_rate = 1e-4;  ///< m/s: at rest once the spread grows by less
+  double rest_velocity_fraction = 0.01;  ///< of a duct's largest plug velocity: stopped once it stays below
+  double rate_window = 2.0;              ///< s, over which rates are taken
+  double residual_window = 5.0;          ///< s, the last of a run, for its residual speed
+  double creep_factor = 3.0;  ///< a residual up to this many times the predicted creep is explained by it
+  std::vector<double> overshoot_times = {20.0, 25.0, 60.0};  ///< s
+  double stop_from = 10.0;                                   ///< s, where arbitrary stops begin
+  double stop_to = 60.0;                                     ///< s
+};
+
+/// Why a run still moves at its end, as far as known.
+enum class Cause { at_rest, approaching_rest, creep, noise, unexplained, unknown };
+std::string to_string(Cause);
+
+/// What is measured of one run. Spreads in m, velocities in m/s. Empty: not measurable, or without meaning
+/// for this run.
+struct Measures {
+  std::optional<double> end;        ///< s, the last time recorded
+  std::optional<double> gauge_end;  ///< spread (m) or plug velocity (m/s) at the end
+  std::optional<double> spread_1_5mm,
+      spread_6mm;                       ///< of the last profile: the sensitivity to the 3 mm threshold
+  std::optional<double> centre_depth;   ///< m, of the last profile
+  std::optional<double> rest_declared;  ///< s, by the run itself
+  std::optional<double> rest_by_shear_rate, rest_by_spread_rate;  ///< s
+  std::optional<double> stop_after_step;                          ///< s after the last change of force, ducts
+  std::optional<double> stopping_bound;                           ///< s, its exact upper bound, ducts
+  std::optional<double> residual;  ///< m/s: growth of the spread, or plug velocity, over the last seconds
+  std::optional<double> residual_scatter;  ///< of the gauge about its trend there
+  std::optional<double> predicted_creep;   ///< m/s, what the regularisation alone would leave
+  Cause cause = Cause::unknown;
+  std::optional<double> overshoot_reference;        ///< m, the arrested spread overshoots are counted from
+  std::string overshoot_reference_run;              ///< its label
+  std::map<double, double> overshoot;               ///< s -> m
+  std::optional<double> stop_lowest, stop_highest;  ///< the gauge over all arbitrary stops
+  std::optional<double> volume_drift;               ///< (last - first)/first
+  std::optional<double> mass_drift;
+  std::optional<double> cpu, wall, cpu_per_simulated_second;  ///< s
+};
+
+/// A run under comparison.
+struct RunView {
+  runs::Run run;
+  std::string label;  ///< unique
+  std::string solver, model;
+  bool exact = false;
+  bool held = false;   ///< it came to rest: its last state stands for all later times
+  bool fluid = false;  ///< a law that never comes to rest
+  bool noisy = false;
+  std::string noise;    ///< why
+  std::string trouble;  ///< "interrupted at 12 s", "failed at 3 s: why"; empty where the run came to its end
+  Series gauge;         ///< spread (m) or plug velocity (m/s)
+  Series shear_rate;    ///< 99th percentile, 1/s
+  Measures measures;
+
+  /// The profile on `grid` at a time, linear between the recorded ones; none where the run has nothing to
+  /// say.
+  std::optional<std::vector<double>> profile(double time, const std::vector<double>& grid) const;
+  std::optional<double> gauge_at(double time) const;
+};
+
+/// The difference of one pair of runs.
+struct Pair {
+  std::size_t run = 0, reference = 0;
+  std::string kind;  ///< "law", "solver", "both", "settings" or "exact": what differs
+  struct At {
+    double time = 0.0;
+    ProfileError error;
+    std::optional<double> gauge_difference;  ///< run less reference
+  };
+  std::vector<At> at;
+};
+
+struct Comparison {
+  Options options;
+  std::string title;
+  scenes::Kind kind = scenes::Kind::slump;
+  bool radial = true;  ///< profiles are against a radius
+  std::vector<RunView> runs;
+  std::vector<Pair> pairs;
+  std::vector<double> grid;           ///< m, common
+  std::vector<double> frames;         ///< s, at which profiles are shown and written
+  std::vector<double> times;          ///< s, at which pairs are compared
+  std::vector<double> stops;          ///< s, arbitrary stops
+  double end = 0.0;                   ///< s, of the longest run
+  double cell = 0.0;                  ///< m, the coarsest cell; 0 where none is known
+  std::vector<std::string> notes;     ///< what the reader must know before trusting anything
+  std::vector<std::string> findings;  ///< the first paragraph, sentence by sentence
+  std::string fair;                   ///< which comparison is fair
+};
+
+/// Every run directory named: a folder without run.json stands for the runs in it, and in its folders.
+/// @throws runs::RunError where there is none.
+std::vector<std::filesystem::path> find_runs(const std::vector<std::filesystem::path>&);
+
+/// @throws runs::RunError where a run cannot be read or the runs are of different kinds of scene.
+Comparison compare_runs(const std::vector<std::filesystem::path>&, const Options& = {});
+
+/// The words: findings and fair, from everything else.
+void describe(Comparison&);
+
+nlohmann::ordered_json to_json(const Comparison&);
+
+/// Writes comparison.json, measures.csv, spread.csv (velocity.csv of a duct), profiles.csv and index.html.
+void write_comparison(const Comparison&, const std::filesystem::path& report);
+
+}  // namespace flowrest::compare

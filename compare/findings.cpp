@@ -1,0 +1,261 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/comparison.h"
+#include "compare/words.h"
+
+namespace flowrest::compare {
+
+namespace {
+
+using words::listed;
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string difference_of_spread(double metres) {
+  const double mm = std::round(1000.0 * metres);
+  if (mm == 0.0) return "the same to the millimetre";
+  return fmt::format("{:.0f} mm {}", std::abs(mm), mm > 0.0 ? "wider" : "narrower");
+}
+
+std::string noise_clause(const RunView& view) {
+  return view.noisy ? fmt::format("; noisy: {}", view.noise) : "";
+}
+
+/// What an elasto-viscoplastic slump came to.
+std::string arrest_sentence(const RunView& view) {
+  const Measures& m = view.measures;
+  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  if (view.held)
+    return fmt::format("{} comes to rest{} with a spread of {}{}.", view.label,
+                       m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "",
+                       words::spread(*m.gauge_end), noise);
+  const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
+  if (m.cause == Cause::at_rest && rest)
+    return fmt::format("{} has all but stopped by {} and ends with a spread of {}{}.", view.label,
+                       words::time(*rest), words::spread(*m.gauge_end), noise);
+  return fmt::format("{} has not come to rest by {}: its spread is {}{}{}.", view.label, words::time(*m.end),
+                     words::spread(*m.gauge_end),
+                     m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", noise);
+}
+
+/// "601 mm at 60 s (26 mm past the arrested 575 mm; growing by 0.25 mm/s, 0.01 mm/s of it predicted)".
+std::string fluid_clause(const RunView& view) {
+  const Measures& m = view.measures;
+  std::string inner;
+  const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : "; ") + part; };
+  if (m.overshoot_reference && !m.overshoot_reference_run.empty()) {
+    const double over = std::round(1000.0 * (*m.gauge_end - *m.overshoot_reference));
+    add(over == 0.0 ? "level with the arrested spread"
+                    : fmt::format("{:.0f} mm {} the arrested {}", std::abs(over),
+                                  over > 0.0 ? "past" : "short of", words::spread(*m.overshoot_reference)));
+  }
+  if (m.residual) {
+    std::string part = fmt::format("changing by {}", words::speed(*m.residual));
+    if (m.predicted_creep)
+      part += fmt::format(" where its regularisation alone predicts {}", words::speed(*m.predicted_creep));
+    add(part);
+  }
+  if (view.noisy) add(fmt::format("noisy: {}", view.noise));
+  return fmt::format("{} stands at {} at {}{}", view.label, words::spread(*m.gauge_end), words::time(*m.end),
+                     inner.empty() ? "" : fmt::format(" ({})", inner));
+}
+
+/// The latest time at which a pair of runs can be compared.
+const Pair::At* last_gauged(const Pair& pair) {
+  for (auto at = pair.at.rbegin(); at != pair.at.rend(); ++at)
+    if (at->gauge_difference) return &*at;
+  return nullptr;
+}
+
+std::string cause_sentence(const Comparison& comparison) {
+  std::vector<std::string> creep, noise, unexplained;
+  for (const RunView& view : comparison.runs) {
+    if (view.measures.cause == Cause::creep) creep.push_back(view.label);
+    if (view.measures.cause == Cause::noise) noise.push_back(view.label);
+    if (view.measures.cause == Cause::unexplained) unexplained.push_back(view.label);
+  }
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& labels, const std::string& one,
+                       const std::string& many) {
+    if (!labels.empty())
+      text +=
+          fmt::format("{}{} {}.", text.empty() ? "" : " ", listed(labels), labels.size() == 1 ? one : many);
+  };
+  add(creep, "still moves because its regularisation creeps",
+      "still move because their regularisations creep");
+  add(noise,
+      "moves faster than its regularisation explains, and its monitor reports noise: what it adds is "
+      "numerics, not law",
+      "move faster than their regularisations explain, and their monitors report noise: what they add is "
+      "numerics, not law");
+  add(unexplained, "moves faster than its regularisation explains although no noise was reported",
+      "move faster than their regularisations explain although no noise was reported");
+  return text.empty() ? text : fmt::format("The cause of what is left: {}", text);
+}
+
+/// Law against solver: the same solver with another law, and the same law in another solver.
+std::string split_sentence(const Comparison& comparison) {
+  std::vector<std::string> law, solver;
+  for (const Pair& pair : comparison.pairs) {
+    if (pair.kind != "law" && pair.kind != "solver") continue;
+    const Pair::At* at = last_gauged(pair);
+    if (!at) continue;
+    const RunView &run = comparison.runs[pair.run], &reference = comparison.runs[pair.reference];
+    // Two fluids differ by their regularisation only; the law is read off against the material that stops.
+    if (pair.kind == "law" && reference.fluid) continue;
+    const std::string what = comparison.kind == scenes::Kind::slump
+                                 ? difference_of_spread(*at->gauge_difference)
+                                 : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
+                                               *at->gauge_difference >= 0.0 ? "faster" : "slower");
+    (pair.kind == "law" ? law : solver)
+        .push_back(
+            fmt::format("{} is {} than {} at {}", run.label, what, reference.label, words::time(at->time)));
+  }
+  std::string text;
+  if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
+  if (!solver.empty())
+    text += fmt::format("{}Changing only the solver: {}.", text.empty() ? "" : " ", listed(solver));
+  return text;
+}
+
+std::string cost_sentence(const Comparison& comparison) {
+  std::vector<std::string> costs;
+  for (const RunView& view : comparison.runs)
+    if (view.measures.cpu && !view.exact)
+      costs.push_back(fmt::format("{} {}", view.label, words::duration(*view.measures.cpu)));
+  return costs.empty() ? "" : fmt::format("CPU time: {}.", listed(costs));
+}
+
+std::string trouble_sentences(const Comparison& comparison) {
+  std::string text;
+  for (const RunView& view : comparison.runs)
+    if (!view.trouble.empty())
+      text += fmt::format("{}{} is incomplete ({}); what follows knows it only that far{}.",
+                          text.empty() ? "" : " ", view.label, view.trouble, noise_clause(view));
+  return text;
+}
+
+void describe_slump(Comparison& comparison) {
+  auto& out = comparison.findings;
+  std::vector<std::string> fluids, exact;
+  for (const RunView& view : comparison.runs) {
+    if (view.gauge.empty()) continue;
+    if (view.exact) {
+      exact.push_back(fmt::format("{} ({})", words::spread(*view.measures.gauge_end), view.label));
+    } else if (view.fluid) {
+      fluids.push_back(fluid_clause(view));
+    } else {
+      out.push_back(arrest_sentence(view));
+    }
+  }
+  if (!fluids.empty())
+    out.push_back(fmt::format("{} never comes to rest: {}.",
+                              fluids.size() == 1 ? "The regularised fluid" : "A regularised fluid",
+                              listed(fluids, "; ")));
+  out.push_back(split_sentence(comparison));
+  out.push_back(cause_sentence(comparison));
+  if (!exact.empty()) out.push_back(fmt::format("The quasi-static solutions give {}.", listed(exact)));
+}
+
+void describe_duct(Comparison& comparison) {
+  auto& out = comparison.findings;
+  std::optional<double> bound;
+  for (const RunView& view : comparison.runs)
+    if (view.measures.stopping_bound) bound = view.measures.stopping_bound;
+  for (const RunView& view : comparison.runs) {
+    const Measures& m = view.measures;
+    if (view.exact || view.gauge.empty()) continue;
+    const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+    const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
+    if (m.stop_after_step && m.cause != Cause::creep)
+      out.push_back(fmt::format("{} reaches {} and stops {} after the last change of force{}.", view.label,
+                                words::velocity(largest), words::time(*m.stop_after_step), noise));
+    else
+      out.push_back(fmt::format(
+          "{} reaches {} and is still moving at {}{}{}.", view.label, words::velocity(largest),
+          m.residual ? words::velocity(*m.residual) : std::string("an unknown speed"),
+          m.predicted_creep && *m.predicted_creep > 0.0
+              ? fmt::format(" (its regularisation predicts {})", words::velocity(*m.predicted_creep))
+              : "",
+          noise));
+  }
+  if (bound)
+    out.push_back(
+        fmt::format("The exact material stops within {} of the last change of force.", words::time(*bound)));
+  for (const Pair& pair : comparison.pairs) {
+    if (pair.kind != "exact" || pair.at.empty()) continue;
+    const auto steady = std::find_if(pair.at.begin(), pair.at.end(),
+                                     [](const Pair::At& at) { return at.error.l2_relative > 0.0; });
+    if (steady != pair.at.end())
+      out.push_back(fmt::format("{} differs from the exact steady profile by {} in L2 at {}.",
+                                comparison.runs[pair.run].label, words::percent(steady->error.l2_relative),
+                                words::time(steady->time)));
+  }
+  out.push_back(split_sentence(comparison));
+  out.push_back(cause_sentence(comparison));
+}
+
+std::string fair_slump(const Comparison& comparison) {
+  std::string text =
+      "The exact profiles are quasi-static: they are the shapes at which gravity is just held by the yield "
+      "stress, reached "
+      "without inertia. A cone that is let go at once arrives with momentum and spreads past them; how far "
+      "depends on its "
+      "viscosity. (For Roussel's benchmark, plastic viscosities of 20, 50 and 500 Pa s arrested at 578, 559 "
+      "and 540 mm in one "
+      "and the same scheme, about 3.5 % of overshoot at 50 Pa s; taken to infinite viscosity, 556 ± 10 mm "
+      "for a spread whose "
+      "second-order solution is 562 mm.) The leading order in height over radius, whose foot lies at 600 mm "
+      "there, leaves out "
+      "the extensional stress in the unsheared layer and is too wide; a run that matches it does so because "
+      "its errors cancel. "
+      "So the fair comparisons are: one run with another of the same law, which shows the discretisation; "
+      "one run with another "
+      "of the same solver, which shows the law; and any run with the second-order profile only as a lower "
+      "limit that inertia "
+      "carries it past.";
+  const bool axisymmetric = comparison.radial;
+  return axisymmetric ? text
+                      : "The exact profile is quasi-static and of leading order: inertia carries a slump "
+                        "that is let go at "
+                        "once past it. The fair comparisons are those between runs: the same law in two "
+                        "solvers shows the "
+                        "discretisation, two laws in the same solver show the law.";
+}
+
+}  // namespace
+
+void describe(Comparison& comparison) {
+  comparison.findings.clear();
+  if (const std::string trouble = trouble_sentences(comparison); !trouble.empty())
+    comparison.findings.push_back(trouble);
+  if (comparison.kind == scenes::Kind::slump) {
+    describe_slump(comparison);
+    comparison.fair = fair_slump(comparison);
+  } else {
+    describe_duct(comparison);
+    comparison.fair =
+        "The steady profiles are exact, and any run may be held against them. How a flow stops has no closed "
+        "form, but a bound "
+        "that no exact material can pass. Under a force below yield a regularised fluid creeps for ever at a "
+        "speed that its "
+        "law alone fixes: compare it with that speed, and only what is beyond it with the solver. Codes "
+        "agree on velocity "
+        "profiles long before they agree on arrest: judge by both.";
+  }
+  comparison.findings.push_back(cost_sentence(comparison));
+  if (comparison.kind == scenes::Kind::slump && comparison.cell > 0.0)
+    comparison.findings.push_back(fmt::format(
+        "Each run stands on one grid: differences below a cell ({:g} mm) are not settled by this comparison.",
+        1000.0 * comparison.cell));
+  std::erase_if(comparison.findings, [](const std::string& sentence) { return sentence.empty(); });
+  for (std::string& sentence : comparison.findings) sentence = capitalised(sentence);
+}
+
+}  // namespace flowrest::compare

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/comparison.h"
+#include "compare/report/report.h"
+
+namespace flowrest::compare {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json scaled(const std::optional<double>& value, double scale = 1.0) {
+  return value && std::isfinite(*value) ? Json(*value * scale) : Json(nullptr);
+}
+
+Json measures_json(const RunView& view, scenes::Kind kind) {
+  const Measures& m = view.measures;
+  Json json = {{"end_s", scaled(m.end)}};
+  if (kind == scenes::Kind::slump) {
+    json["spread_end_mm"] = scaled(m.gauge_end, 1e3);
+    json["spread_end_at_1.5mm_mm"] = scaled(m.spread_1_5mm, 1e3);
+    json["spread_end_at_6mm_mm"] = scaled(m.spread_6mm, 1e3);
+    json["centre_end_mm"] = scaled(m.centre_depth, 1e3);
+    json["rest_declared_s"] = scaled(m.rest_declared);
+    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
+    json["rest_by_spread_rate_s"] = scaled(m.rest_by_spread_rate);
+    json["overshoot_reference_run"] = m.overshoot_reference_run;
+    json["overshoot_reference_mm"] = scaled(m.overshoot_reference, 1e3);
+    for (const auto& [time, value] : m.overshoot)
+      json[fmt::format("overshoot_at_{:g}s_mm", time)] = 1e3 * value;
+    json["residual_mm_s"] = scaled(m.residual, 1e3);
+    json["residual_scatter_mm"] = scaled(m.residual_scatter, 1e3);
+    json["predicted_creep_mm_s"] = scaled(m.predicted_creep, 1e3);
+    json["arbitrary_stop_lowest_mm"] = scaled(m.stop_lowest, 1e3);
+    json["arbitrary_stop_highest_mm"] = scaled(m.stop_highest, 1e3);
+  } else {
+    json["plug_velocity_end_m_s"] = scaled(m.gauge_end);
+    json["stop_after_step_s"] = scaled(m.stop_after_step);
+    json["stopping_time_bound_s"] = scaled(m.stopping_bound);
+    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
+    json["residual_m_s"] = scaled(m.residual);
+    json["residual_scatter_m_s"] = scaled(m.residual_scatter);
+    json["predicted_creep_m_s"] = scaled(m.predicted_creep);
+    json["arbitrary_stop_lowest_m_s"] = scaled(m.stop_lowest);
+    json["arbitrary_stop_highest_m_s"] = scaled(m.stop_highest);
+  }
+  json["residual_cause"] = to_string(m.cause);
+  json["volume_drift"] = scaled(m.volume_drift);
+  json["mass_drift"] = scaled(m.mass_drift);
+  json["cpu_s"] = scaled(m.cpu);
+  json["wall_s"] = scaled(m.wall);
+  json["cpu_s_per_simulated_s"] = scaled(m.cpu_per_simulated_second);
+  return json;
+}
+
+/// The keys of run.json that a reader of the comparison may want, without the bulk.
+Json provenance_json(const RunView& view) {
+  Json json;
+  for (const char* key : {"provenance", "versions", "openfoam", "threads", "steps", "particles", "cells",
+                          "particle_steps_per_cpu_s", "resumed_at_s", "source"})
+    if (view.run.info.contains(key)) json[key] = view.run.info[key];
+  return json;
+}
+
+std::string quoted(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return '"' + escaped + '"';
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.17g}", *value) : "";
+}
+
+std::string header(const Comparison& comparison, const std::string& first) {
+  std::string line = first;
+  for (const RunView& view : comparison.runs) line += ',' + quoted(view.label);
+  return line + '\n';
+}
+
+/// One column a run: spread in mm, or velocity in m/s, at the common times.
+std::string gauge_csv(const Comparison& comparison) {
+  const bool slump = comparison.kind == scenes::Kind::slump;
+  std::string text = header(comparison, "time_s");
+  const double step = round_step(comparison.end / 1200.0);
+  for (int i = 0; i * step <= comparison.end * (1.0 + 1e-9); ++i) {
+    text += fmt::format("{:.17g}", i * step);
+    for (const RunView& view : comparison.runs) {
+      auto value = view.gauge_at(i * step);
+      if (value && slump) *value *= 1e3;
+      text += ',' + cell(value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string profiles_csv(const Comparison& comparison) {
+  std::string text = header(comparison, comparison.kind == scenes::Kind::slump ? "time_s,r_m" : "time_s,y_m");
+  for (const double time : comparison.frames) {
+    std::vector<std::optional<std::vector<double>>> columns;
+    for (const RunView& view : comparison.runs) columns.push_back(view.profile(time, comparison.grid));
+    for (std::size_t i = 0; i < comparison.grid.size(); ++i) {
+      text += fmt::format("{:.17g},{:.17g}", time, comparison.grid[i]);
+      for (const auto& column : columns)
+        text += ',' + cell(column ? std::optional((*column)[i]) : std::nullopt);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string measures_csv(const Json& json) {
+  std::string text;
+  for (const Json& run : json["runs"]) {
+    if (text.empty()) {
+      text = "run,solver,model,status,verdict";
+      for (const Json& column : json["measure_columns"]) text += ',' + column.get<std::string>();
+      text += '\n';
+    }
+    text += quoted(run["label"]) + ',' + quoted(run["solver"]) + ',' + quoted(run["model"]) + ',' +
+            quoted(run["status"]) + ',' + quoted(run["verdict"]);
+    for (const Json& column : json["measure_columns"]) {
+      text += ',';
+      const Json value = run["measures"].value(column.get<std::string>(), Json());
+      if (value.is_number()) text += cell(value.get<double>());
+      if (value.is_string()) text += quoted(value.get<std::string>());
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+Json to_json(const Comparison& comparison) {
+  const bool slump = comparison.kind == scenes::Kind::slump;
+  const Options& o = comparison.options;
+  Json json = {{"format", "flowrest comparison"},
+               {"format_version", 1},
+               {"title", comparison.title},
+               {"kind", scenes::to_string(comparison.kind)},
+               {"findings", comparison.findings},
+               {"notes", comparison.notes},
+               {"fair", comparison.fair},
+               {"thresholds",
+                {{"rest_shear_rate_p99_1_s", o.rest_shear_rate},
+                 {"rest_spread_rate_mm_s", 1e3 * o.rest_spread_rate},
+                 {"rest_velocity_fraction", o.rest_velocity_fraction},
+                 {"rate_window_s", o.rate_window},
+                 {"residual_window_s", o.residual_window},
+                 {"creep_factor", o.creep_factor},
+                 {"spread_depth_mm", 3.0}}}};
+  Json columns = Json::array();
+  for (const RunView& view : comparison.runs) {
+    const Json& info = view.run.info;
+    Json run = {{"label", view.label},
+                {"directory", view.run.directory.string()},
+                {"solver", view.solver},
+                {"model", view.model},
+                {"status", info.value("status", "")},
+                {"reason", info.value("reason", "")},
+                {"verdict", info.value("verdict", "")},
+                {"noisy", view.noisy},
+                {"trouble", view.trouble},
+                {"measures", measures_json(view, comparison.kind)},
+                {"made_by", provenance_json(view)}};
+    for (const auto& [name, value] : run["measures"].items())
+      if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+    json["runs"].push_back(run);
+  }
+  json["measure_columns"] = columns;
+  const double scale = slump ? 1e3 : 1.0;
+  const std::string unit = slump ? "_mm" : "_m_s";
+  json["pairs"] = Json::array();
+  for (const Pair& pair : comparison.pairs) {
+    Json entry = {{"run", comparison.runs[pair.run].label},
+                  {"reference", comparison.runs[pair.reference].label},
+                  {"differs_in", pair.kind},
+                  {"at", Json::array()}};
+    for (const auto& at : pair.at)
+      entry["at"].push_back({{"time_s", at.time},
+                             {"l1" + unit, scale * at.error.l1},
+                             {"l2" + unit, scale * at.error.l2},
+                             {"linf" + unit, scale * at.error.linf},
+                             {"l1_relative", at.error.l1_relative},
+                             {"l2_relative", at.error.l2_relative},
+                             {(slump ? "spread" : "plug_velocity") + std::string("_difference") + unit,
+                              scaled(at.gauge_difference, scale)}});
+    json["pairs"].push_back(entry);
+  }
+  json["arbitrary_stops"] = {{"time_s", comparison.stops}, {"runs", Json::array()}};
+  for (const RunView& view : comparison.runs) {
+    if (view.exact) continue;
+    Json values = Json::array();
+    for (const double stop : comparison.stops) values.push_back(scaled(view.gauge_at(stop), scale));
+    json["arbitrary_stops"]["runs"].push_back(
+        {{"label", view.label}, {(slump ? "spread" : "plug_velocity") + unit, values}});
+  }
+  json["provenance"] = runs::provenance();
+  return json;
+}
+
+void write_comparison(const Comparison& comparison, const std::filesystem::path& report) {
+  std::error_code error;
+  std::filesystem::create_directories(report, error);
+  if (error || !std::filesystem::is_directory(report))
+    throw runs::RunError(fmt::format("{}: cannot be made a folder: {}", report.string(),
+                                     error ? error.message() : "a file of that name is in the way"));
+  if (std::filesystem::exists(report / "run.json"))
+    throw runs::RunError(fmt::format("{}: is a run; name another folder for the report", report.string()));
+  const Json json = to_json(comparison);
+  // The page first: it is the one that may lack what it is made of.
+  const std::string page = report_page(comparison, json);
+  runs::write_atomically(report / "comparison.json",
+                         json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  runs::write_atomically(report / "measures.csv", measures_csv(json));
+  runs::write_atomically(report / (comparison.kind == scenes::Kind::slump ? "spread.csv" : "velocity.csv"),
+                         gauge_csv(comparison));
+  runs::write_atomically(report / "profiles.csv", profiles_csv(comparison));
+  runs::write_atomically(report / "index.html", page);
+}
+
+}  // namespace flowrest::compare

@@ -1,0 +1,85 @@
+#include "compare/synthetic_runs.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "compare/exact/solutions.h"
+#include "runs/depth.h"
+
+namespace flowrest::compare::synthetic {
+
+using std::numbers::pi;
+
+double Slump::radius_at(double time) const {
+  return radius - (radius - 0.1) / std::pow(1.0 + time / rate, 2) + 0.5 * creep * time;
+}
+
+void write(const Slump& slump, const std::filesystem::path& directory) {
+  scenes::Overrides overrides;
+  overrides.model = slump.model;
+  const auto scene = scenes::load_scene("roussel-slump", overrides);
+  runs::RunWriter writer(directory, scene, slump.solver);
+  writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3", "shear_rate_p99_1_s"});
+  const double volume = scene.slump().volume();
+  const auto depth_at = [&](double time) {
+    const double radius = slump.radius_at(time);
+    const double height = 15.0 * volume / (8.0 * pi * radius * radius);
+    runs::RadialDepthAccumulator rings(slump.cell, 0.45);
+    constexpr int shells = 4000;
+    for (int i = 0; i < shells; ++i) {
+      const double width = radius / shells, r = (i + 0.5) * width;
+      rings.add(r, 2.0 * pi * r * width * height * std::sqrt(1.0 - r / radius));
+    }
+    return rings.depth();
+  };
+  const int rows = static_cast<int>(std::lround(slump.end / 0.05));
+  for (int i = 0; i <= rows; ++i) {
+    const double time = 0.05 * i;
+    const double radius = slump.radius_at(time);
+    const double spread = 2.0 * radius + slump.noise * std::sin(37.0 * time);
+    const double shear_rate = 20.0 / std::pow(1.0 + time / slump.rate, 3) + slump.creep / 0.05;
+    writer.history(std::vector{time, 1e3 * spread, 1e3 * 15.0 * volume / (8.0 * pi * radius * radius),
+                               volume * (1.0 - 1e-5 * time / slump.end), shear_rate});
+    if (i % 5 == 0) {
+      const auto depth = depth_at(time);
+      writer.profile(time, depth.centres(), depth.depth);
+    }
+  }
+  writer.info()["cpu_s"] = slump.cpu;
+  writer.info()["wall_s"] = 0.6 * slump.cpu;
+  writer.info()["steps"] = rows * 100;
+  if (slump.status == runs::Status::at_rest) writer.info()["rest_time_s"] = slump.end;
+  writer.finish(slump.status, slump.reason, slump.verdict);
+}
+
+void write(const Duct& duct, const std::filesystem::path& directory) {
+  scenes::Overrides overrides;
+  overrides.model = duct.model;
+  const auto scene = scenes::load_scene("poiseuille-step-down", overrides);
+  const auto& material = scene.material;
+  const double height = scene.duct().height;
+  const exact::DuctFlow flow{{material.density, material.yield_stress, material.plastic_viscosity},
+                             height,
+                             scene.forces.body_force.front().second};
+  const double step = scene.forces.body_force.back().first;
+  runs::RunWriter writer(directory, scene, "mpm");
+  writer.history_columns({"time_s", "plug_velocity_m_s", "mean_velocity_m_s"});
+  for (int i = 0; i <= 400; ++i) {
+    const double time = 0.05 * i;
+    double factor = 1.0 - std::exp(-3.0 * time);
+    if (time > step)
+      factor = std::max(1.0 - (time - step) / duct.decay, 0.0) + duct.creep / flow.plug_velocity();
+    writer.history(std::vector{time, factor * flow.plug_velocity(), factor * flow.mean_velocity()});
+    if (i % 10 != 0) continue;
+    std::vector<double> y, velocity;
+    for (int j = 0; j < 50; ++j) {
+      y.push_back(height * ((j + 0.5) / 50 - (duct.from_plate ? 0.0 : 0.5)));
+      velocity.push_back(factor * flow.velocity(height * ((j + 0.5) / 50 - 0.5)));
+    }
+    writer.profile(time, y, velocity);
+  }
+  writer.info()["cpu_s"] = 3.0;
+  writer.finish(runs::Status::end_time, "", "sound");
+}
+
+}  // namespace flowrest::compare::synthetic

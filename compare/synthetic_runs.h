@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runs/run_directory.h"
+
+/// Runs made up by formula, for the tests of the comparison: what they must measure is known.
+namespace flowrest::compare::synthetic {
+
+/// A slump whose depth is H sqrt(1 - r/R), with the cone's volume, and whose radius approaches `radius` while
+/// it creeps.
+struct Slump {
+  std::string solver = "mpm";
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  double radius = 0.288;  ///< m, approached
+  double rate = 0.4;      ///< s: R = radius - (radius - 0.1)/(1 + t/rate)^2 + creep t/2
+  double creep = 0.0;     ///< m/s, of the spread
+  double noise = 0.0;     ///< m, amplitude of a ripple on the spread
+  double end = 60.0;      ///< s
+  double cell = 0.010;    ///< m, of the rings
+  runs::Status status = runs::Status::end_time;
+  std::string reason;
+  std::string verdict = "sound";
+  double cpu = 12.0;  ///< s
+
+  double radius_at(double time) const;
+};
+void write(const Slump&, const std::filesystem::path& directory);
+
+/// A duct that follows the exact steady profile up to the step down, then decays at 1/`decay` to `creep`
+/// times its shape.
+struct Duct {
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  double decay = 1.0;       ///< s
+  double creep = 0.0;       ///< m/s, plug velocity left over
+  bool from_plate = false;  ///< y counted from the lower plate
+};
+void write(const Duct&, const std::filesystem::path& directory);
+
+}  // namespace flowrest::compare::synthetic

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// Quantities in words: no more digits than the quantity carries.
+namespace flowrest::compare::words {
+
+std::string spread(double metres);  ///< "575 mm"
+std::string time(double seconds);   ///< "19 s", "4.6 s"
+std::string speed(
+    double m_per_s);  ///< "0.25 mm/s", of creep; "less than 0.001 mm/s" below what can be told from rest
+std::string velocity(double m_per_s);  ///< "1.333 m/s", "1.7 mm/s"
+std::string duration(double seconds);  ///< "14 s", "4.4 min", "2.1 h"
+std::string percent(double fraction);  ///< "1.3 %"
+/// "a, b and c"; with another separator every item is parted by it.
+std::string listed(const std::vector<std::string>& items, const std::string& separator = ", ");
+
+}  // namespace flowrest::compare::words
