@@ -1,0 +1,122 @@
+#pragma once
+
+#include "mpm/simd/math.h"
+
+/// The flow laws, each as what happens to the shear stress invariant of the elastic trial within one step. All laws share
+/// the trial (deviator.h) and the equation of state; they differ only in `relax`.
+///
+/// tau = sqrt(s:s / 2) and rate = sqrt(2 D:D) throughout.
+namespace flowrest::mpm {
+
+/// Parameters of every law, resolved from the scene; what a law does not use it does not read.
+template <class T>
+struct FlowParameters {
+  T yield_stress{};          ///< Pa
+  T plastic_viscosity{};     ///< Pa s
+  T regularisation_time{};   ///< s
+  T critical_shear_rate{};   ///< 1/s
+  T flocculation_growth{};   ///< A_thix / tau0, 1/s
+  T deflocculation{};        ///< alpha
+};
+
+/// What a step leaves of the trial.
+template <class T>
+struct Relaxed {
+  T stress{};  ///< Pa, the invariant after the step
+  T rate{};    ///< 1/s, plastic (EVP) or total (fluid) shear rate
+  T lambda{};  ///< flocculation state after the step
+};
+
+/// Elasto-viscoplastic Bingham solid: closed-form return map, Yu et al. 2026, Eqs. 38 to 47.
+template <bool Thixotropic>
+struct ElastoViscoplastic {
+  static constexpr bool thixotropic = Thixotropic;
+  static constexpr bool iterative = false;
+
+  /// `trial` is tau of the elastic trial, Pa; `shear` is G dt, Pa s.
+  template <class T>
+  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda, T /*rate*/) {
+    const T viscosity = shear + p.plastic_viscosity;
+    if constexpr (!Thixotropic) {
+      const T excess = maximum(trial - p.yield_stress, T(0));
+      const T rate = excess / viscosity;  // Eq. 47
+      return {trial - shear * rate, rate, T(0)};
+    } else {
+      const T lambda_trial = lambda + p.flocculation_growth * dt;               // Eq. 38
+      const T excess = maximum(trial - (T(1) + lambda_trial) * p.yield_stress, T(0));  // Eq. 39
+      // Eqs. 43 and 44. As printed the root cancels for small alpha; this form does not, and holds for alpha = 0.
+      const T xi = viscosity + dt * p.deflocculation * (p.yield_stress - trial);
+      const T zeta = T(2) * p.deflocculation * dt * viscosity;
+      const T root = square_root(xi * xi + T(2) * zeta * excess);
+      const T rate = xi >= T(0) ? T(2) * excess / (xi + root) : (root - xi) / maximum(zeta, T(1e-30));
+      return {trial - shear * rate, rate, lambda_trial / (T(1) + dt * p.deflocculation * rate)};  // Eq. 45
+    }
+  }
+};
+
+/// A fluid whose stress is found pointwise implicitly: tau_trial - G dt x = tau(x). No viscous limit on the step.
+/// Thixotropy is staggered: lambda first, with the last step's rate, then the stress with lambda held.
+template <bool Thixotropic>
+struct BiViscous {
+  static constexpr bool thixotropic = Thixotropic;
+  static constexpr bool iterative = false;
+
+  template <class T>
+  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda, T rate_before) {
+    T yield = p.yield_stress;
+    if constexpr (Thixotropic) {
+      lambda = (lambda + p.flocculation_growth * dt) / (T(1) + dt * p.deflocculation * rate_before);
+      yield *= T(1) + lambda;
+    }
+    const T stiff = p.plastic_viscosity + yield / p.critical_shear_rate;
+    const T slow = trial / (shear + stiff);
+    const T fast = (trial - yield) / (shear + p.plastic_viscosity);
+    const T rate = slow <= p.critical_shear_rate ? slow : fast;
+    return {trial - shear * rate, rate, lambda};
+  }
+};
+
+/// Newtonian: the same with no yield stress.
+struct Newtonian {
+  static constexpr bool thixotropic = false;
+  static constexpr bool iterative = false;
+
+  template <class T>
+  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T, T, T) {
+    const T rate = trial / (shear + p.plastic_viscosity);
+    return {trial - shear * rate, rate, T(0)};
+  }
+};
+
+/// Papanastasiou-regularised Bingham fluid, tau(x) = eta x + yield (1 - exp(-m x)), Yu et al. 2026, Eqs. 10 and 13.
+/// The balance is concave in x, so Newton's method approaches the root from below without overshoot once it is below it;
+/// the Bingham solution is such a start. `iterative`: the loop over particles calls `iterate` until all have converged.
+template <bool Thixotropic>
+struct Papanastasiou {
+  static constexpr bool thixotropic = Thixotropic;
+  static constexpr bool iterative = true;
+
+  /// One Newton step from `rate`, never below the Bingham solution.
+  template <class T>
+  static FLOWREST_INLINE T iterate(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
+    const T viscosity = shear + p.plastic_viscosity;
+    const T floor = maximum(trial - yield, T(0)) / viscosity;
+    const T decay = exponential(-p.regularisation_time * rate);
+    const T residual = trial - viscosity * rate - yield * (T(1) - decay);
+    const T slope = viscosity + yield * p.regularisation_time * decay;
+    return maximum(rate + residual / slope, floor);
+  }
+};
+
+/// Shear stress of a fluid at a given rate: the explicit update, and the reference of the implicit one. Pa.
+template <class T>
+FLOWREST_INLINE T papanastasiou_stress(const FlowParameters<T>& p, T yield, T rate) {
+  return p.plastic_viscosity * rate + yield * (T(1) - exponential(-p.regularisation_time * rate));
+}
+
+template <class T>
+FLOWREST_INLINE T bi_viscous_stress(const FlowParameters<T>& p, T yield, T rate) {
+  return p.plastic_viscosity * rate + yield * minimum(rate / p.critical_shear_rate, T(1));
+}
+
+}  // namespace flowrest::mpm

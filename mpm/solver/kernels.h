@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mpm/material/equation_of_state.h"
+#include "mpm/material/flow_law.h"
+#include "mpm/solver/layout.h"
+
+/// The stages of a step as plain functions over one block, compiled once per instruction set and chosen at run time.
+namespace flowrest::mpm {
+
+enum class Transfer { quadratic_apic, linear_flip };
+enum class Dilatation { cell_average, centroid };  ///< how the volumetric part of the strain is averaged (B-bar)
+enum class StressRate { hughes_winget, jaumann };
+enum class Law {
+  elasto_viscoplastic,
+  elasto_viscoplastic_thixotropic,
+  papanastasiou,
+  papanastasiou_thixotropic,
+  bi_viscous,
+  bi_viscous_thixotropic,
+  newtonian
+};
+
+/// Everything that is the same for all particles of a step.
+template <class T>
+struct StepParameters {
+  T step{};           ///< s
+  T cell{};           ///< m
+  T density{};        ///< kg/m3, initial
+  T acceleration[3]{};  ///< m/s2, of gravity and body force
+  T keep{};           ///< FLIP: share of the particle's own velocity kept, exp(-step / relaxation time)
+  FlowParameters<T> flow;
+  EquationOfState<T> state;
+  Law law = Law::elasto_viscoplastic;
+  StressRate stress_rate = StressRate::hughes_winget;
+  Dilatation dilatation = Dilatation::cell_average;
+  bool explicit_fluid = false;
+  AxisBounds bounds[3];
+  T smallest_mass{};  ///< kg: a node with less carries no velocity
+};
+
+/// Room for one thread's tile of particles in flight: every particle of a tile's cells, `capacity` at most.
+template <class T>
+struct Workspace {
+  T* memory = nullptr;  ///< workspace_arrays * capacity values, aligned to 64 bytes
+  int capacity = 0;     ///< a multiple of 16, at least the fullest cell's particles + tile_padding
+};
+constexpr int workspace_arrays = 112;
+constexpr int tile_padding = 16;  ///< lanes of the last pack may write past a tile's end
+
+template <class T>
+using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&, T* arenas, const T* nodes,
+                            const Workspace<T>&);
+template <class T>
+using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const T* arenas, T* nodes);
+
+/// One instruction set's stages for one dimension and transfer.
+template <class T>
+struct Kernels {
+  int dimension = 0;
+  int records = 1;  ///< records per node, in arenas and nodes
+  BlockStage<T> particles_to_grid = nullptr;      ///< mass, momentum and the impulse of the step's forces into the arena
+  NodeStage<T> update_nodes = nullptr;            ///< arenas summed into velocities
+  BlockStage<T> grid_to_particles = nullptr;      ///< APIC: velocities, strain, stress, positions
+                                                  ///< FLIP: velocities, and their momentum re-mapped into the arena
+  NodeStage<T> remap_nodes = nullptr;             ///< FLIP only (MUSL)
+  BlockStage<T> remapped_to_particles = nullptr;  ///< FLIP only (MUSL): strain, stress, positions
+};
+
+/// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or "generic".
+std::vector<std::string> instruction_sets();
+
+/// @throws std::invalid_argument where the machine cannot run `instruction_set`.
+template <class T>
+Kernels<T> kernels(const std::string& instruction_set, int dimension, bool axisymmetric, Transfer);
+
+}  // namespace flowrest::mpm

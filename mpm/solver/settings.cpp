@@ -1,0 +1,99 @@
+#include "mpm/solver/settings.h"
+
+#include <cmath>
+#include <limits>
+
+namespace flowrest::mpm {
+
+namespace {
+
+Law law_of(scenes::Model model, bool thixotropic) {
+  switch (model) {
+    case scenes::Model::elasto_viscoplastic:
+      return thixotropic ? Law::elasto_viscoplastic_thixotropic : Law::elasto_viscoplastic;
+    case scenes::Model::papanastasiou:
+      return thixotropic ? Law::papanastasiou_thixotropic : Law::papanastasiou;
+    case scenes::Model::bi_viscous:
+      return thixotropic ? Law::bi_viscous_thixotropic : Law::bi_viscous;
+    case scenes::Model::newtonian:
+      return Law::newtonian;
+  }
+  return Law::newtonian;
+}
+
+PlaneWall wall_of(scenes::Wall wall) { return wall == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip; }
+
+std::array<AxisBounds, 3> bounds_of(const scenes::Scene& scene) {
+  std::array<AxisBounds, 3> bounds{};
+  const auto vertical = static_cast<std::size_t>(vertical_axis(scene));
+  if (scene.kind == scenes::Kind::duct) {
+    bounds[0] = {PlaneWall::none, PlaneWall::none, 0, block_edge, true};
+    const int layers = static_cast<int>(std::lround(scene.duct().height / cell_size(scene)));
+    bounds[1] = {wall_of(scene.base), wall_of(scene.base), 0, layers, false};
+    return bounds;
+  }
+  // The axis of symmetry and planes of symmetry mirror the body: what a slip wall does.
+  if (scene.geometry.dimension != scenes::Dimension::full)
+    for (std::size_t a = 0; a < vertical; ++a) bounds[a].lower = PlaneWall::slip;
+  bounds[vertical].lower = wall_of(scene.base);
+  return bounds;
+}
+
+}  // namespace
+
+double cell_size(const scenes::Scene& scene) {
+  if (scene.kind != scenes::Kind::duct) return scene.mpm.cell;
+  return scene.duct().height / std::max(1.0, std::round(scene.duct().height / scene.mpm.cell));
+}
+
+double whole_body_factor(const scenes::Scene& scene) {
+  if (scene.kind == scenes::Kind::duct) return 1.0;
+  switch (scene.geometry.dimension) {
+    case scenes::Dimension::quarter:
+      return 4.0;
+    case scenes::Dimension::plane:
+      return 2.0;
+    default:
+      return 1.0;
+  }
+}
+
+std::array<double, 3> acceleration_at(const scenes::Scene& scene, double time) {
+  std::array<double, 3> a{};
+  a[static_cast<std::size_t>(vertical_axis(scene))] = -scene.forces.gravity;
+  if (!scene.forces.body_force.empty()) a[0] = scene.forces.body_force_at(time) / scene.material.density;
+  return a;
+}
+
+SolverSettings settings_of(const scenes::Scene& scene) {
+  const auto& m = scene.material;
+  SolverSettings s;
+  s.dimension = scene.spatial_dimension();
+  s.axisymmetric = scene.geometry.dimension == scenes::Dimension::axisymmetric;
+  const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
+  s.transfer = scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
+  s.dilatation = paper ? Dilatation::centroid : Dilatation::cell_average;
+  s.stress_rate = paper ? StressRate::jaumann : StressRate::hughes_winget;
+  s.law = law_of(m.model, scene.thixotropy.has_value());
+  s.explicit_fluid = m.model != scenes::Model::elasto_viscoplastic &&
+                     scene.mpm.fluid_update == scenes::FluidUpdate::explicit_update;
+  s.single_precision = scene.mpm.precision == scenes::Precision::single_precision;
+  s.cell = cell_size(scene);
+  s.density = m.density;
+  // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
+  s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
+  s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
+  s.flow.plastic_viscosity = m.plastic_viscosity;
+  s.flow.regularisation_time = m.regularisation_time.value_or(0.0);
+  s.flow.critical_shear_rate = m.critical_shear_rate.value_or(1.0);
+  if (scene.thixotropy) {
+    s.flow.flocculation_growth = scene.thixotropy->flocculation_rate / m.yield_stress;
+    s.flow.deflocculation = scene.thixotropy->deflocculation_coefficient;
+  }
+  s.state = {m.bulk_modulus(), m.shear_modulus(), m.equation_of_state_exponent};
+  s.bounds = bounds_of(scene);
+  s.threads = scene.mpm.threads;
+  return s;
+}
+
+}  // namespace flowrest::mpm

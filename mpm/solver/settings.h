@@ -1,0 +1,23 @@
+#pragma once
+
+#include "mpm/solver/solver.h"
+#include "scenes/scene.h"
+
+namespace flowrest::mpm {
+
+/// The solver's settings for a scene and the model it names.
+SolverSettings settings_of(const scenes::Scene&);
+
+/// What one simulated particle stands for of the whole body: 4 for a quarter, 2 for half a plane section, else 1.
+double whole_body_factor(const scenes::Scene&);
+
+/// The axis gravity points down along (the last), and the axis a duct is driven along (the first).
+inline int vertical_axis(const scenes::Scene& scene) { return scene.spatial_dimension() - 1; }
+
+/// Uniform acceleration at a time, m/s2 per axis.
+std::array<double, 3> acceleration_at(const scenes::Scene&, double time);
+
+/// The cell size in use: a duct's is adjusted so that its walls lie on cell faces. m
+double cell_size(const scenes::Scene&);
+
+}  // namespace flowrest::mpm

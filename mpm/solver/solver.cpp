@@ -1,0 +1,333 @@
+#include "mpm/solver/solver.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mpm/material/deviator.h"
+#include "mpm/solver/particles.h"
+#include "runs/run_directory.h"
+
+namespace flowrest::mpm {
+
+namespace {
+
+/// A thread is worth its barriers from about this many particles each.
+constexpr std::size_t particles_per_thread = 1500;
+constexpr int steps_between_rearrangements = 16;
+constexpr double disorder_worth_rearranging = 0.25;
+constexpr int usual_tile_capacity = 96;
+
+template <class T>
+class SolverOf final : public Solver {
+ public:
+  SolverOf(const SolverSettings& settings, const std::vector<Seed>& seeds)
+      : SolverOf(settings, seeds.size()) {
+    std::vector<CellIndex> cells(seeds.size());
+    const ParticleView<T>& v = particles_.view();
+    for (std::size_t p = 0; p < seeds.size(); ++p) {
+      cells[p] = seeds[p].cell;
+      for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
+        constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
+        v.position[a][p] = std::min(static_cast<T>(seeds[p].position[a]), below_one);
+        v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
+      }
+      v.mass[p] = static_cast<T>(seeds[p].volume * settings.density);
+      v.volume_ratio[p] = T(1);
+      if (v.lambda) v.lambda[p] = static_cast<T>(seeds[p].flocculation);
+    }
+    blocks_.build(cells);
+    rearrange();
+    tile_capacity_ = usual_tile_capacity;
+    prepare();
+  }
+
+  SolverOf(const SolverSettings& settings, const SolverState& state) : SolverOf(settings, state.cells.size()) {
+    for (int k = 0; k < particles_.array_count(); ++k) {
+      const auto& from = state.arrays.at(static_cast<std::size_t>(k));
+      for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[p] = static_cast<T>(from[p]);
+    }
+    blocks_.build(state.cells);
+    tile_capacity_ = state.tile_capacity;
+    prepare();
+  }
+
+  StepResult step(double step, const std::array<double, 3>& acceleration) override {
+    parameters_.step = static_cast<T>(step);
+    parameters_.keep = static_cast<T>(std::exp(-step / settings_.flip_relaxation_time));
+    for (std::size_t a = 0; a < 3; ++a) parameters_.acceleration[a] = static_cast<T>(acceleration[a]);
+    run_stages();
+    const StepResult result = collect(step);
+    relocate();
+    return result;
+  }
+
+  void visit(const std::function<void(const ParticleBatch&)>& use) override {
+    ParticleBatch batch;
+    for (const auto slot : blocks_.occupied()) {
+      fill(batch, blocks_.view(slot));
+      use(batch);
+    }
+  }
+
+  SolverState state() override {
+    SolverState out;
+    const auto order = blocks_.sorted_order();
+    out.cells.reserve(order.size());
+    for (const auto p : order) out.cells.push_back(blocks_.cell_of(p));
+    for (int k = 0; k < particles_.array_count(); ++k) {
+      auto& to = out.arrays.emplace_back();
+      to.reserve(order.size());
+      for (const auto p : order) to.push_back(static_cast<double>(particles_.array(k)[p]));
+    }
+    out.tile_capacity = tile_capacity_;
+    return out;
+  }
+
+  std::size_t particle_count() const override { return particles_.size(); }
+  std::size_t occupied_cells() const override {
+    std::size_t cells = 0;
+    for (const auto slot : blocks_.occupied()) {
+      const BlockView v = const_cast<SparseBlocks&>(blocks_).view(slot);
+      const int count = power(block_edge, settings_.dimension);
+      for (int c = 0; c < count; ++c) cells += v.start[c + 1] > v.start[c];
+    }
+    return cells;
+  }
+  std::size_t bytes() const override {
+    return particles_.bytes() + blocks_.bytes() + (arenas_.size() + nodes_.size()) * sizeof(T);
+  }
+  int threads() const override { return threads_; }
+  const std::string& instruction_set() const override { return instruction_set_; }
+  const StageTimes& stage_times() const override { return times_; }
+
+ private:
+  SolverOf(const SolverSettings& settings, std::size_t count)
+      : settings_(settings),
+        particles_({settings.dimension, settings.transfer == Transfer::quadratic_apic,
+                    settings.transfer == Transfer::linear_flip, is_thixotropic(settings.law)},
+                   count),
+        blocks_(settings.dimension, settings.bounds),
+        instruction_set_(settings.instruction_set.empty() ? instruction_sets().front() : settings.instruction_set),
+        kernels_(kernels<T>(instruction_set_, settings.dimension, settings.axisymmetric, settings.transfer)) {
+    threads_ = settings.threads > 0
+                   ? settings.threads
+                   : std::clamp(static_cast<int>(count / particles_per_thread), 1, omp_get_num_procs());
+    auto& p = parameters_;
+    p.cell = static_cast<T>(settings.cell);
+    p.density = static_cast<T>(settings.density);
+    p.flow = {static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
+              static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
+              static_cast<T>(settings.flow.flocculation_growth), static_cast<T>(settings.flow.deflocculation)};
+    p.state = {static_cast<T>(settings.state.bulk_modulus), static_cast<T>(settings.state.shear_modulus),
+               static_cast<T>(settings.state.exponent)};
+    p.law = settings.law;
+    p.stress_rate = settings.stress_rate;
+    p.dilatation = settings.dilatation;
+    p.explicit_fluid = settings.explicit_fluid;
+    for (std::size_t a = 0; a < 3; ++a) p.bounds[a] = settings.bounds[a];
+    // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep every real
+    // contribution and large enough that its inverse stays finite.
+    const double full = settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
+    p.smallest_mass = static_cast<T>(full * 1e-15);
+  }
+
+  static bool is_thixotropic(Law law) {
+    return law == Law::elasto_viscoplastic_thixotropic || law == Law::papanastasiou_thixotropic ||
+           law == Law::bi_viscous_thixotropic;
+  }
+
+  void prepare() {
+    const std::size_t node_values = static_cast<std::size_t>(kernels_.records) * record;
+    const auto arena_size = static_cast<std::size_t>(power(arena_edge, settings_.dimension)) * node_values;
+    const auto nodes_size = static_cast<std::size_t>(power(block_edge, settings_.dimension)) * node_values;
+    const std::size_t slots = blocks_.slot_count();
+    if (arenas_.size() < slots * arena_size) {
+      const std::size_t room = slots + slots / 4;
+      arenas_ = AlignedArray<T>(room * arena_size);
+      nodes_ = AlignedArray<T>(room * nodes_size);
+    }
+    while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell()) tile_capacity_ += 32;
+    if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {
+      workspaces_.clear();
+      workspace_memory_.clear();
+      for (int t = 0; t < threads_; ++t) {
+        workspace_memory_.emplace_back(static_cast<std::size_t>(workspace_arrays) * static_cast<std::size_t>(tile_capacity_));
+        workspaces_.push_back({workspace_memory_.back().data(), tile_capacity_});
+      }
+    }
+    views_.clear();
+    for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
+    node_views_.clear();
+    for (std::uint32_t slot = 0; slot < slots; ++slot) node_views_.push_back(blocks_.node_view(slot));
+    stale_ = false;
+  }
+
+  void run_stages() {
+    if (stale_) prepare();
+    const auto blocks = static_cast<std::int64_t>(views_.size());
+    const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
+    const ParticleView<T>& view = particles_.view();
+    T* const arenas = arenas_.data();
+    T* const nodes = nodes_.data();
+    double marks[6] = {};
+#pragma omp parallel num_threads(threads_)
+    {
+      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
+      const auto over_blocks = [&](BlockStage<T> stage) {
+#pragma omp for schedule(dynamic, 1)
+        for (std::int64_t b = 0; b < blocks; ++b) stage(parameters_, view, views_[static_cast<std::size_t>(b)], arenas, nodes, workspace);
+      };
+      const auto over_nodes = [&](NodeStage<T> stage) {
+#pragma omp for schedule(static)
+        for (std::int64_t b = 0; b < node_blocks; ++b) stage(parameters_, node_views_[static_cast<std::size_t>(b)], arenas, nodes);
+      };
+      const auto mark = [&](int i) {
+#pragma omp master
+        marks[i] = omp_get_wtime();
+      };
+      mark(0);
+      over_blocks(kernels_.particles_to_grid);
+      mark(1);
+      over_nodes(kernels_.update_nodes);
+      mark(2);
+#pragma omp for schedule(static)
+      for (std::int64_t b = 0; b < blocks; ++b) *views_[static_cast<std::size_t>(b)].sums = {};
+      over_blocks(kernels_.grid_to_particles);
+      mark(3);
+      if (kernels_.remapped_to_particles) {
+        over_nodes(kernels_.remap_nodes);
+        mark(4);
+        over_blocks(kernels_.remapped_to_particles);
+      } else {
+        mark(4);
+      }
+      mark(5);
+    }
+    times_.particles_to_grid += marks[1] - marks[0];
+    times_.nodes += marks[2] - marks[1];
+    times_.grid_to_particles += marks[3] - marks[2] + marks[5] - marks[4];
+    if (kernels_.remapped_to_particles) times_.nodes += marks[4] - marks[3];
+  }
+
+  StepResult collect(double step) {
+    StepResult result;
+    double speed_squared = 0.0;
+    std::uint32_t faults = 0;
+    moved_ = false;
+    for (const auto& view : views_) {
+      const BlockSums& s = *view.sums;
+      speed_squared = std::max(speed_squared, s.largest_speed_squared);
+      result.largest_pressure = std::max(result.largest_pressure, s.largest_pressure);
+      result.dissipated += s.dissipated;
+      faults += s.faults;
+      moved_ |= s.movers > 0;
+    }
+    result.largest_speed = std::sqrt(speed_squared);
+    if (faults > 0 || !std::isfinite(result.dissipated))
+      throw runs::NumericsError(fmt::format(
+          "{} particles moved further than one cell in one step of {:.3g} s, or are no longer finite: the step is unstable", faults,
+          step));
+    return result;
+  }
+
+  void relocate() {
+    const double begin = omp_get_wtime();
+    ++steps_;
+    if (moved_) {
+      blocks_.relocate(held_, threads_);
+      constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
+      for (const auto& h : held_) particles_.view().position[h.axis][h.particle] = h.upper ? below_one : T(0);
+      stale_ = true;
+    }
+    if (steps_ % steps_between_rearrangements == 0 && blocks_.disorder() > disorder_worth_rearranging) rearrange();
+    times_.sorting += omp_get_wtime() - begin;
+  }
+
+  void rearrange() {
+    particles_.permute(blocks_.sorted_order(), threads_);
+    blocks_.particles_rearranged();
+    stale_ = true;
+  }
+
+  void fill(ParticleBatch& batch, const BlockView& block) const {
+    const ParticleView<T>& v = particles_.view();
+    const int dim = settings_.dimension, cells = power(block_edge, dim);
+    const std::size_t count = block.start[cells];
+    batch.count = count;
+    for (auto& a : batch.position) a.assign(count, 0.0);
+    for (auto& a : batch.velocity) a.assign(count, 0.0);
+    for (auto* a : {&batch.mass, &batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure, &batch.pressure,
+                    &batch.elastic_energy})
+      a->resize(count);
+    batch.flocculation.resize(v.lambda ? count : 0);
+    for (int cell = 0; cell < cells; ++cell) {
+      const int in_block[3] = {dim == 3 ? cell / 16 : cell / 4, dim == 3 ? cell / 4 % 4 : cell % 4, cell % 4};
+      double thrust = 0.0, total = 0.0;
+      for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) {
+        const std::uint32_t p = block.list[i];
+        for (int a = 0; a < dim; ++a) {
+          const auto axis = static_cast<std::size_t>(a);
+          batch.position[axis][i] = (block.origin[a] + in_block[a] + static_cast<double>(v.position[a][p])) * settings_.cell;
+          batch.velocity[axis][i] = static_cast<double>(v.velocity[a][p]);
+        }
+        const double ratio = static_cast<double>(v.volume_ratio[p]);
+        batch.mass[i] = static_cast<double>(v.mass[p]);
+        batch.volume[i] = batch.mass[i] / settings_.density * ratio;
+        batch.rate[i] = static_cast<double>(v.rate[p]);
+        batch.shear_stress[i] = shear_stress(p);
+        batch.raw_pressure[i] = static_cast<double>(v.pressure[p]);
+        if (v.lambda) batch.flocculation[i] = static_cast<double>(v.lambda[p]);
+        const double shape = settings_.explicit_fluid ? 0.0
+                                                      : batch.shear_stress[i] * batch.shear_stress[i] /
+                                                            (2.0 * settings_.state.at(ratio).shear) * ratio;
+        batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + settings_.state.energy(ratio));
+        thrust += batch.raw_pressure[i] * batch.volume[i];
+        total += batch.volume[i];
+      }
+      for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) batch.pressure[i] = thrust / total;
+    }
+  }
+
+  double shear_stress(std::uint32_t p) const {
+    const ParticleView<T>& v = particles_.view();
+    const auto d = [&](int c) { return static_cast<double>(v.deviator[c][p]); };
+    if (settings_.dimension == 2) return std::sqrt(Deviator<double, 2>{d(0), d(1), d(2)}.half_square());
+    return std::sqrt(Deviator<double, 3>{d(0), d(1), d(2), d(3), d(4)}.half_square());
+  }
+
+  SolverSettings settings_;
+  Particles<T> particles_;
+  SparseBlocks blocks_;
+  std::string instruction_set_;
+  Kernels<T> kernels_;
+  StepParameters<T> parameters_;
+  int threads_ = 1;
+  int tile_capacity_ = usual_tile_capacity;
+  AlignedArray<T> arenas_, nodes_;
+  std::vector<AlignedArray<T>> workspace_memory_;
+  std::vector<Workspace<T>> workspaces_;
+  std::vector<BlockView> views_;
+  std::vector<NodeView> node_views_;
+  std::vector<SparseBlocks::Held> held_;
+  bool stale_ = true;
+  bool moved_ = false;
+  std::uint64_t steps_ = 0;
+  StageTimes times_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+  if (settings.single_precision) return std::make_unique<SolverOf<float>>(settings, seeds);
+  return std::make_unique<SolverOf<double>>(settings, seeds);
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+  if (settings.single_precision) return std::make_unique<SolverOf<float>>(settings, state);
+  return std::make_unique<SolverOf<double>>(settings, state);
+}
+
+}  // namespace flowrest::mpm

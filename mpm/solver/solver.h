@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mpm/solver/kernels.h"
+#include "mpm/solver/sparse_blocks.h"
+#include "scenes/scene.h"
+
+namespace flowrest::mpm {
+
+/// What the solver needs to know of a scene, in its own terms.
+struct SolverSettings {
+  int dimension = 2;
+  bool axisymmetric = false;
+  Transfer transfer = Transfer::quadratic_apic;
+  Dilatation dilatation = Dilatation::cell_average;
+  StressRate stress_rate = StressRate::hughes_winget;
+  Law law = Law::elasto_viscoplastic;
+  bool explicit_fluid = false;
+  bool single_precision = false;
+  double cell = 0.0;                  ///< m
+  double density = 0.0;               ///< kg/m3
+  double flip_relaxation_time = 0.0;  ///< s; infinite for pure FLIP
+  FlowParameters<double> flow;
+  EquationOfState<double> state;
+  std::array<AxisBounds, 3> bounds{};
+  int threads = 0;               ///< 0: as many as the particles can feed, up to all cores
+  std::string instruction_set;   ///< empty: the best this machine runs
+};
+
+/// One particle to begin with.
+struct Seed {
+  CellIndex cell{};
+  std::array<double, 3> position{};  ///< within the cell, in [0, 1)
+  double volume = 0.0;               ///< m3
+  std::array<double, 3> velocity{};  ///< m/s
+  double flocculation = 0.0;
+};
+
+/// Extremes and sums of one step.
+struct StepResult {
+  double largest_speed = 0.0;     ///< m/s
+  double largest_pressure = 0.0;  ///< Pa
+  double dissipated = 0.0;        ///< J in this step
+};
+
+/// The particles of one block in double precision, in an order that depends on nothing but the motion.
+struct ParticleBatch {
+  std::size_t count = 0;
+  std::array<std::vector<double>, 3> position;  ///< m
+  std::array<std::vector<double>, 3> velocity;  ///< m/s
+  std::vector<double> mass;                     ///< kg
+  std::vector<double> volume;                   ///< m3
+  std::vector<double> rate;                     ///< 1/s, plastic (EVP) or total (fluid) shear rate
+  std::vector<double> shear_stress;             ///< Pa, the invariant
+  std::vector<double> raw_pressure;             ///< Pa, of the particle's own volume
+  std::vector<double> pressure;                 ///< Pa, averaged over the cell: the one that acts
+  std::vector<double> flocculation;             ///< empty without thixotropy
+  std::vector<double> elastic_energy;           ///< J, of shape and volume
+};
+
+/// CPU per stage of the steps so far.
+struct StageTimes {
+  double particles_to_grid = 0.0, nodes = 0.0, grid_to_particles = 0.0, sorting = 0.0;  ///< s of wall time
+};
+
+/// Everything a solver holds, for checkpoints: particles in sorted order.
+struct SolverState {
+  std::vector<CellIndex> cells;
+  std::vector<std::vector<double>> arrays;  ///< of every array, in the order of Particles; exact for either precision
+  int tile_capacity = 0;
+};
+
+/// A material point solver for one scene. One call of a virtual function per step; none inside.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  /// Advances by `step` seconds under a uniform acceleration (m/s2, per axis of the solver).
+  /// @throws runs::NumericsError where a particle moved further than a cell or is not finite.
+  virtual StepResult step(double step, const std::array<double, 3>& acceleration) = 0;
+  /// Calls `use` for every block in turn.
+  virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
+  virtual SolverState state() = 0;
+  virtual std::size_t particle_count() const = 0;
+  virtual std::size_t occupied_cells() const = 0;
+  virtual std::size_t bytes() const = 0;  ///< of particles and grid
+  virtual int threads() const = 0;
+  virtual const std::string& instruction_set() const = 0;
+  virtual const StageTimes& stage_times() const = 0;
+};
+
+std::unique_ptr<Solver> make_solver(const SolverSettings&, const std::vector<Seed>&);
+std::unique_ptr<Solver> make_solver(const SolverSettings&, const SolverState&);
+
+}  // namespace flowrest::mpm
