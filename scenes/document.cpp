@@ -68,27 +68,35 @@ bool is_section(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Why a key is refused: the section it really belongs to, or the nearest name, and what is allowed here.
+std::string unknown_section(const std::string& name) {
+  const std::string near = nearest(name, section_names());
+  return fmt::format("unknown section {}{}; allowed: {}", quoted(name),
+                     near.empty() ? "" : ", nearest is " + near, joined(section_names()));
+}
+
+/// The section a key really belongs to, or the nearest name.
+std::string hint(const std::string& section, const std::string& name) {
+  for (const Key& key : keys()) {
+    if (key.name != name) continue;
+    return fmt::format(", {} belongs to {}", name,
+                       key.section.empty() ? "the top" : fmt::format("[{}]", key.section));
+  }
+  std::vector<std::string> candidates = key_names(section);
+  if (section.empty()) {
+    for (const std::string& other : section_names()) candidates.push_back(other);
+  }
+  const std::string near = nearest(name, candidates);
+  return near.empty() ? "" : ", nearest is " + near;
+}
+
+/// Why a key is refused, and what is allowed in its place.
 std::string unknown_key(const std::string& section, const std::string& name) {
   std::vector<std::string> allowed = key_names(section);
   if (section.empty()) {
-    for (const std::string& other : section_names()) allowed.push_back("[" + other + "]");
+    for (const std::string& other : section_names()) allowed.push_back(fmt::format("[{}]", other));
   }
-  std::string hint;
-  for (const Key& key : keys()) {
-    if (key.name == name && hint.empty())
-      hint = ", " + name + " belongs to " +
-             (key.section.empty() ? "the top of the scene" : "[" + key.section + "]");
-  }
-  if (hint.empty()) {
-    std::vector<std::string> candidates = key_names(section);
-    if (section.empty()) {
-      for (const std::string& other : section_names()) candidates.push_back(other);
-    }
-    if (const std::string near = nearest(name, candidates); !near.empty()) hint = ", nearest is " + near;
-  }
-  const std::string path = section.empty() ? name : section + "." + name;
-  return fmt::format("unknown key {}{}; allowed: {}", quoted(path), hint, joined(allowed));
+  const std::string path = section.empty() ? name : fmt::format("{}.{}", section, name);
+  return fmt::format("unknown key {}{}; allowed: {}", quoted(path), hint(section, name), joined(allowed));
 }
 
 void read_section(const std::string& section, const toml::table& table, const std::string& source,
@@ -155,7 +163,7 @@ Given read_document(const std::string& text, const std::string& source, Faults& 
     } else if (const Key* known = find_key(key)) {
       given.values[known->path()] = to_value(node, source);
     } else {
-      faults.add(where, unknown_key("", key));
+      faults.add(where, node.is_table() ? unknown_section(key) : unknown_key("", key));
     }
   }
   return given;
@@ -169,6 +177,13 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+void relocate(Value& value, const Location& where) {
+  value.where = where;
+  if (auto* items = std::get_if<std::vector<Value>>(&value.content)) {
+    for (Value& item : *items) relocate(item, where);
+  }
+}
+
 /// The value of a setting as TOML; what is no TOML is a word that stands without quotes.
 Value setting_value(const std::string& text, const Location& where) {
   Faults unread;
@@ -176,7 +191,7 @@ Value setting_value(const std::string& text, const Location& where) {
   if (!is_readable(text, where, unread)) return value;
   const std::optional<toml::table> table = parsed("value = " + text, where.source, unread);
   if (table && table->size() == 1) value = to_value(*table->get("value"), where.source);
-  value.where = where;
+  relocate(value, where);
   return value;
 }
 
@@ -203,9 +218,7 @@ Given read_setting(const std::string& setting, Faults& faults) {
     given.values[path] = setting_value(trimmed(setting.substr(equals + 1)), given.start);
     if (!section.empty()) given.sections[section] = given.start;
   } else if (!section.empty() && !is_section(section)) {
-    const std::string near = nearest(section, section_names());
-    faults.add(given.start, fmt::format("unknown section {}{}; allowed: {}", quoted(section),
-                                        near.empty() ? "" : ", nearest is " + near, joined(section_names())));
+    faults.add(given.start, unknown_section(section));
   } else {
     faults.add(given.start, unknown_key(section, name));
   }

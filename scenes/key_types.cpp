@@ -11,8 +11,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::int64_t most_names = 16;  // models in a list of runs
-constexpr std::size_t most_force_steps = 10000;
+constexpr std::size_t most_steps = 10000;
 
 std::string must_be(const std::string& what, const Value& value) {
   return fmt::format("must be {}, not {}", what, value.what());
@@ -41,96 +40,96 @@ std::string read_integer(const Value& value, std::int64_t low, std::int64_t high
   return {};
 }
 
-std::string read_models(const Value& value, std::vector<Model>& models) {
-  std::vector<Value> items;
-  if (const auto* array = std::get_if<std::vector<Value>>(&value.content)) {
-    items = *array;
-  } else if (std::holds_alternative<std::string>(value.content)) {
-    items = {value};
-  } else {
-    return must_be("an array of models", value) + "; allowed: " + joined(all_names<Model>());
-  }
-  if (std::ssize(items) > most_names) return "names a model more than once";
+Complaint read_models(const Value& value, std::vector<Model>& models) {
+  std::vector<Value> items = {value};  // a single name is a list of one
+  if (const auto* array = std::get_if<std::vector<Value>>(&value.content)) items = *array;
   models.clear();
   for (const Value& item : items) {
     Model model{};
-    if (const std::string wrong = read_choice(item, model); !wrong.empty()) return "(an item) " + wrong;
+    if (const std::string wrong = read_choice(item, model); !wrong.empty()) return {wrong, item.where};
     if (std::find(models.begin(), models.end(), model) != models.end()) {
-      return fmt::format("names {} twice; allowed: each model once", to_string(model));
+      return {fmt::format("names {} twice; allowed: each model once", to_string(model)), item.where};
     }
     models.push_back(model);
   }
   return {};
 }
 
-std::string read_force_step(const Value& item, std::pair<double, double>& step) {
+/// One [time, force] pair of steps, where `earlier` are those before it.
+Complaint read_step(const Value& item, std::vector<std::pair<double, double>>& earlier) {
   const auto* pair = std::get_if<std::vector<Value>>(&item.content);
-  if (!pair || pair->size() != 2) return "must hold [time, N/m3] pairs";
-  std::string wrong = read_number((*pair)[0], from(0.0, largest_time), step.first);
-  if (!wrong.empty()) return "(a time) " + wrong;
-  wrong = read_number((*pair)[1], from(-largest_stress, largest_stress), step.second);
-  if (!wrong.empty()) return "(a force) " + wrong;
+  if (!pair || pair->size() != 2) return {"must hold pairs of two numbers, [time, force]", item.where};
+  const Value& time = (*pair)[0];
+  const Value& force = (*pair)[1];
+  std::pair<double, double> step;
+  std::string wrong = read_number(time, from(0.0, largest_time), step.first);
+  if (!wrong.empty()) return {"at a time " + wrong, time.where};
+  wrong = read_number(force, from(-largest_stress, largest_stress), step.second);
+  if (!wrong.empty()) return {"at a force " + wrong, force.where};
+  if (earlier.empty() && step.first != 0.0) {
+    return {fmt::format("starts at {:g} s; allowed: pairs that start at time 0", step.first), time.where};
+  }
+  if (!earlier.empty() && step.first <= earlier.back().first) {
+    return {
+        fmt::format("goes from {:g} s to {:g} s; allowed: ascending times", earlier.back().first, step.first),
+        time.where};
+  }
+  earlier.push_back(step);
   return {};
 }
 
-std::string read_body_force(const Value& value, std::vector<std::pair<double, double>>& force) {
-  const auto* array = std::get_if<std::vector<Value>>(&value.content);
-  if (!array) {
+Complaint read_steps(const Value& value, std::vector<std::pair<double, double>>& steps) {
+  steps.clear();
+  if (std::holds_alternative<std::int64_t>(value.content) || std::holds_alternative<double>(value.content)) {
     double constant = 0.0;
-    if (!std::holds_alternative<std::int64_t>(value.content) &&
-        !std::holds_alternative<double>(value.content)) {
-      return must_be("a number or an array of [time, N/m3] pairs", value);
-    }
     const std::string wrong = read_number(value, from(-largest_stress, largest_stress), constant);
-    force = {{0.0, constant}};
-    return wrong;
+    steps.emplace_back(0.0, constant);
+    return {wrong, value.where};
   }
-  if (array->empty() || array->size() > most_force_steps) {
-    return fmt::format("has {} pairs; allowed: 1 to {}", array->size(), most_force_steps);
+  const auto* array = std::get_if<std::vector<Value>>(&value.content);
+  if (!array) return {must_be("a number or an array of [time, force] pairs", value), value.where};
+  if (array->empty() || array->size() > most_steps) {
+    return {fmt::format("has {} pairs; allowed: 1 to {}", array->size(), most_steps), value.where};
   }
-  force.clear();
   for (const Value& item : *array) {
-    std::pair<double, double> step;
-    if (const std::string wrong = read_force_step(item, step); !wrong.empty()) return wrong;
-    if (force.empty() && step.first != 0.0) {
-      return fmt::format("starts at {:g} s; allowed: pairs that start at time 0", step.first);
-    }
-    if (!force.empty() && step.first <= force.back().first) {
-      return fmt::format("goes from {:g} s to {:g} s; allowed: ascending times", force.back().first,
-                         step.first);
-    }
-    force.push_back(step);
+    if (Complaint wrong = read_step(item, steps); !wrong.what.empty()) return wrong;
   }
   return {};
 }
 
-std::string read_particles(const Value& value, Draft& draft) {
-  constexpr std::int64_t most_along_an_axis = 16;
-  std::int64_t count = 0;
-  if (const auto* array = std::get_if<std::vector<Value>>(&value.content)) {
-    std::vector<int> axes;
-    for (const Value& item : *array) {
-      if (axes.size() == 3) break;
-      const std::string wrong = read_integer(item, 1, most_along_an_axis, count);
-      if (!wrong.empty()) return "(along an axis) " + wrong;
-      axes.push_back(static_cast<int>(count));
-    }
-    if (array->size() != 2 && array->size() != 3) {
-      return fmt::format("has {} entries; allowed: one number, or one entry for each axis (2 or 3)",
-                         array->size());
-    }
-    draft.particles_per_cell = axes;
-    draft.particles_for_each_axis = true;
-    return {};
+constexpr std::int64_t most_particles_along_an_axis = 16;
+
+Complaint read_particles_by_axis(const std::vector<Value>& axes, const Location& where, Draft& draft) {
+  if (axes.size() != 2 && axes.size() != 3) {
+    const std::string entries = axes.size() == 1 ? "entry" : "entries";
+    return {fmt::format("has {} {}; allowed: one number, or one entry for each axis (2 or 3)", axes.size(),
+                        entries),
+            where};
   }
+  draft.particles_for_each_axis = true;
+  draft.particles_per_cell.clear();
+  for (const Value& axis : axes) {
+    std::int64_t count = 0;
+    const std::string wrong = read_integer(axis, 1, most_particles_along_an_axis, count);
+    if (!wrong.empty()) return {"along an axis " + wrong, axis.where};
+    draft.particles_per_cell.push_back(static_cast<int>(count));
+  }
+  return {};
+}
+
+Complaint read_particles(const Value& value, Draft& draft) {
+  if (const auto* axes = std::get_if<std::vector<Value>>(&value.content)) {
+    return read_particles_by_axis(*axes, value.where, draft);
+  }
+  constexpr std::int64_t most =
+      most_particles_along_an_axis * most_particles_along_an_axis * most_particles_along_an_axis;
   if (!std::holds_alternative<std::int64_t>(value.content)) {
-    return must_be("an integer or an array of one integer for each axis", value);
+    return {must_be("an integer or an array of one integer for each axis", value), value.where};
   }
-  std::string wrong =
-      read_integer(value, 1, most_along_an_axis * most_along_an_axis * most_along_an_axis, count);
+  std::int64_t count = 0;
+  const std::string wrong = read_integer(value, 1, most, count);
   draft.particles_per_cell = {static_cast<int>(count)};
-  draft.particles_for_each_axis = false;
-  return wrong;
+  return {wrong, value.where};
 }
 
 std::string read_wall(const Value& value, Wall& wall) {
@@ -148,7 +147,7 @@ Key any_integer(std::string path, std::int64_t low, std::int64_t high, Access<In
     std::int64_t given = 0;
     std::string wrong = read_integer(value, low, high, given);
     if (wrong.empty()) at(draft) = static_cast<Integer>(given);
-    return wrong;
+    return Complaint{wrong, value.where};
   };
   key.write = [=](Draft& draft) { return Json(at(draft)); };
   return key;
@@ -177,7 +176,9 @@ Key plain_key(std::string path, std::string unit, std::string meaning, std::stri
 
 Key number(std::string path, std::string unit, Range range, Access<double> at, std::string meaning) {
   Key key = plain_key(std::move(path), std::move(unit), std::move(meaning), "number, " + range.text());
-  key.read = [=](const Value& value, Draft& draft) { return read_number(value, range, at(draft)); };
+  key.read = [=](const Value& value, Draft& draft) {
+    return Complaint{read_number(value, range, at(draft)), value.where};
+  };
   key.write = [=](Draft& draft) { return Json(at(draft)); };
   return key;
 }
@@ -189,7 +190,7 @@ Key number(std::string path, std::string unit, Range range, Access<std::optional
     double given = 0.0;
     std::string wrong = read_number(value, range, given);
     if (wrong.empty()) at(draft) = given;
-    return wrong;
+    return Complaint{wrong, value.where};
   };
   key.write = [=](Draft& draft) { return at(draft) ? Json(*at(draft)) : Json(); };
   return key;
@@ -206,9 +207,9 @@ Key integer(std::string path, std::int64_t low, std::int64_t high, Access<std::u
 
 Key boolean(std::string path, Access<bool> at, std::string meaning) {
   Key key = plain_key(std::move(path), "", std::move(meaning), "true or false");
-  key.read = [=](const Value& value, Draft& draft) -> std::string {
+  key.read = [=](const Value& value, Draft& draft) -> Complaint {
     const auto* given = std::get_if<bool>(&value.content);
-    if (!given) return must_be("true or false", value);
+    if (!given) return {must_be("true or false", value), value.where};
     at(draft) = *given;
     return {};
   };
@@ -219,11 +220,11 @@ Key boolean(std::string path, Access<bool> at, std::string meaning) {
 Key text(std::string path, Access<std::string> at, std::string meaning) {
   constexpr std::size_t longest = 200;
   Key key = plain_key(std::move(path), "", std::move(meaning), fmt::format("string, 1 to {} bytes", longest));
-  key.read = [=](const Value& value, Draft& draft) -> std::string {
+  key.read = [=](const Value& value, Draft& draft) -> Complaint {
     const auto* given = std::get_if<std::string>(&value.content);
-    if (!given) return must_be("a string", value);
+    if (!given) return {must_be("a string", value), value.where};
     if (given->empty() || given->size() > longest) {
-      return fmt::format("has {} bytes; allowed: 1 to {}", given->size(), longest);
+      return {fmt::format("has {} bytes; allowed: 1 to {}", given->size(), longest), value.where};
     }
     at(draft) = *given;
     return {};
@@ -247,7 +248,7 @@ Key steps(std::string path, std::string unit, Access<std::vector<std::pair<doubl
           std::string meaning) {
   Key key = plain_key(std::move(path), std::move(unit), std::move(meaning),
                       "number, or array of [time, force] with ascending times from 0");
-  key.read = [=](const Value& value, Draft& draft) { return read_body_force(value, at(draft)); };
+  key.read = [=](const Value& value, Draft& draft) { return read_steps(value, at(draft)); };
   key.write = [=](Draft& draft) { return Json(at(draft)); };
   return key;
 }
@@ -261,7 +262,9 @@ Key particles(std::string path, std::string meaning) {
 
 Key wall(std::string path, Access<Wall> at, std::string meaning) {
   Key key = choice(std::move(path), at, std::move(meaning));
-  key.read = [=](const Value& value, Draft& draft) { return read_wall(value, at(draft)); };
+  key.read = [=](const Value& value, Draft& draft) {
+    return Complaint{read_wall(value, at(draft)), value.where};
+  };
   return key;
 }
 

@@ -58,7 +58,9 @@ std::string read_choice(const Value& value, Choice& choice) {
 template <class Choice>
 Key choice(std::string path, Access<Choice> at, std::string meaning) {
   Key key = plain_key(std::move(path), "", std::move(meaning), "one of " + joined(all_names<Choice>()));
-  key.read = [=](const Value& value, Draft& draft) { return read_choice(value, at(draft)); };
+  key.read = [=](const Value& value, Draft& draft) {
+    return Complaint{read_choice(value, at(draft)), value.where};
+  };
   key.write = [=](Draft& draft) { return nlohmann::ordered_json(to_string(at(draft))); };
   return key;
 }

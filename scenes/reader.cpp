@@ -140,17 +140,17 @@ void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) 
   const auto value = given.values.find(key.path());
   const bool is_given = value != given.values.end();
   const bool suits = !key.only_kind || *key.only_kind == kind;
-  std::string wrong;
+  Complaint wrong{"", given.place_of(key.path())};
   if (is_given && !suits) {
-    wrong = misplaced(key, kind);
+    wrong.what = misplaced(key, kind);
   } else if (is_given) {
     wrong = key.read(value->second, draft);
-    if (!wrong.empty()) wrong = fmt::format("{} {}", key.path(), wrong);
+    if (!wrong.what.empty()) wrong.what = fmt::format("{} {}", key.path(), wrong.what);
   } else if (suits && is_expected(key, given)) {
-    wrong = missing(key);
+    wrong.what = missing(key);
   }
-  if (wrong.empty()) return;
-  faults.add(given.place_of(key.path()), wrong);
+  if (wrong.what.empty()) return;
+  faults.add(wrong.where, wrong.what);
   draft.unusable.insert(key.path());
 }
 

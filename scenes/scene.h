@@ -10,8 +10,7 @@
 #include <variant>
 #include <vector>
 
-/// The scene: what is simulated, read from TOML, checked and resolved once for every solver. SI units
-/// throughout.
+/// The scene: what is simulated, read from TOML, checked and resolved once for every solver, in SI units.
 namespace flowrest::scenes {
 
 enum class Kind { slump, duct };
@@ -20,13 +19,11 @@ enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
 enum class Seeding { lattice, jittered };
-/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (limit
-/// enforced).
+/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
 enum class Wall { no_slip, slip };
 
-/// The names used in scenes, on the command line and in run.json ("elasto-viscoplastic", "quadratic-apic",
-/// ...).
+/// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Kind);
 std::string to_string(Dimension);
 std::string to_string(Model);
@@ -45,16 +42,19 @@ struct SlumpGeometry {
   double domain_height = 0.0;       ///< m
   /// Volume of the cone (a frustum), m3.
   double volume() const;
+  bool operator==(const SlumpGeometry&) const = default;
 };
 
 /// A layer between two parallel plates, periodic along x and driven along x.
 struct DuctGeometry {
   double height = 0.0;  ///< m, between the plates
+  bool operator==(const DuctGeometry&) const = default;
 };
 
 struct Geometry {
   Dimension dimension = Dimension::axisymmetric;
   std::variant<SlumpGeometry, DuctGeometry> shape;
+  bool operator==(const Geometry&) const = default;
 };
 
 struct Material {
@@ -72,6 +72,7 @@ struct Material {
   double bulk_modulus() const;        ///< K0 = E / (3 (1 - 2 nu)), Pa
   double shear_modulus() const;       ///< G0 = E / (2 (1 + nu)), Pa
   double longitudinal_speed() const;  ///< sqrt((K0 + 4 G0 / 3) / density), m/s
+  bool operator==(const Material&) const = default;
 };
 
 /// Roussel's structural build-up and breakdown, Yu et al. 2026, Eqs. 11 and 12.
@@ -79,6 +80,7 @@ struct Thixotropy {
   double flocculation_rate = 0.0;           ///< A_thix, Pa/s
   double deflocculation_coefficient = 0.0;  ///< alpha
   double initial_flocculation = 0.0;        ///< lambda0
+  bool operator==(const Thixotropy&) const = default;
 };
 
 struct Forces {
@@ -86,12 +88,14 @@ struct Forces {
   /// (from time s, N/m3) along x, ascending in time; empty where nothing but gravity drives.
   std::vector<std::pair<double, double>> body_force;
   double body_force_at(double time) const;
+  bool operator==(const Forces&) const = default;
 };
 
 struct Time {
   double end = 0.0;           ///< s
   bool stop_at_rest = true;   ///< EVP only: a fluid is never at rest
   double rest_bound = 0.006;  ///< bound on the relative growth of the spread still to come
+  bool operator==(const Time&) const = default;
 };
 
 /// Simulated seconds between outputs.
@@ -100,6 +104,7 @@ struct Output {
   double profile_interval = 0.25;
   double snapshot_interval = 1.0;
   double checkpoint_interval = 5.0;
+  bool operator==(const Output&) const = default;
 };
 
 struct Mpm {
@@ -117,6 +122,7 @@ struct Mpm {
   std::uint64_t seed = 1;  ///< of the jitter
   FluidUpdate fluid_update = FluidUpdate::implicit_update;
   double flip_relaxation_time = 0.05;  ///< s, of `linear-flip`
+  bool operator==(const Mpm&) const = default;
 };
 
 struct Foam {
@@ -126,6 +132,7 @@ struct Foam {
   double air_density = 1.0;               ///< kg/m3
   double air_kinematic_viscosity = 1e-2;  ///< m2/s, tames air jets at no cost in spread
   double wedge_angle = 5.0;               ///< degrees, the whole wedge
+  bool operator==(const Foam&) const = default;
 };
 
 /// Which runs `flowrest run` makes of this scene.
@@ -133,6 +140,7 @@ struct Runs {
   std::vector<Model> mpm;
   std::vector<Model> foam;
   bool exact = false;
+  bool operator==(const Runs&) const = default;
 };
 
 struct Scene {

@@ -38,8 +38,8 @@ struct Key {
   bool required = false;   ///< by every scene of its kind (of [thixotropy]: where the table is given)
   std::string fallback{};  ///< what holds where it is not given, where that is not the constant default
   std::string rival{};     ///< the key whose place this one takes
-  /// Stores the value; returns what is wrong with it, or nothing.
-  std::function<std::string(const Value&, Draft&)> read{};
+  /// Stores the value, or says what is wrong with it.
+  std::function<Complaint(const Value&, Draft&)> read{};
   /// The resolved setting; null where it has none.
   std::function<nlohmann::ordered_json(Draft&)> write{};
 

@@ -31,24 +31,24 @@ Location Given::place_of(const std::string& path) const {
   return section == sections.end() ? start : section->second;
 }
 
-void Faults::add(const Location& where, const std::string& what) { faults_.push_back({where, what}); }
+void Faults::add(const Location& where, const std::string& what) { faults_.push_back({what, where}); }
 
 void Faults::raise() const {
   if (faults_.empty()) return;
   // By line within each source; sources in the order in which they were first found at fault.
   std::vector<std::string> sources;
-  for (const Fault& fault : faults_) {
+  for (const Complaint& fault : faults_) {
     if (std::find(sources.begin(), sources.end(), fault.where.source) == sources.end()) {
       sources.push_back(fault.where.source);
     }
   }
-  auto place = [&](const Fault& fault) {
+  auto place = [&](const Complaint& fault) {
     return std::tuple(std::find(sources.begin(), sources.end(), fault.where.source), fault.where.line,
                       fault.where.column);
   };
-  std::vector<Fault> sorted = faults_;
+  std::vector<Complaint> sorted = faults_;
   std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](const Fault& a, const Fault& b) { return place(a) < place(b); });
+                   [&](const Complaint& a, const Complaint& b) { return place(a) < place(b); });
 
   constexpr std::size_t most = 50;
   std::string message;

@@ -31,6 +31,12 @@ struct Value {
   std::string what() const;
 };
 
+/// What is wrong with a value, and where; nothing is wrong while `what` is empty.
+struct Complaint {
+  std::string what;
+  Location where;
+};
+
 /// Everything given for a scene, by dotted path; later layers replace earlier ones key by key.
 struct Given {
   std::map<std::string, Value> values;
@@ -52,11 +58,7 @@ class Faults {
   void raise() const;
 
  private:
-  struct Fault {
-    Location where;
-    std::string what;
-  };
-  std::vector<Fault> faults_;
+  std::vector<Complaint> faults_;
 };
 
 }  // namespace flowrest::scenes
