@@ -76,13 +76,13 @@ void add_compare(CLI::App& app) {
     const Comparison comparison = compare_runs(find_runs(named), arguments->options);
     write_comparison(comparison, arguments->output);
     for (const std::string& note : comparison.notes) fmt::print("Note: {}\n", note);
-    for (const std::string& finding : comparison.findings) fmt::print("{}\n", finding);
+    for (const Finding& finding : comparison.findings) fmt::print("{}\n", finding.text);
     const std::string page =
         (std::filesystem::absolute(arguments->output) / "index.html").lexically_normal().string();
     fmt::print("\nThe report: {}\n", page);
     if (arguments->json) {
       nlohmann::ordered_json json = {
-          {"report", page}, {"runs", comparison.runs.size()}, {"findings", comparison.findings}};
+          {"report", page}, {"runs", comparison.runs.size()}, {"findings", to_json(comparison)["findings"]}};
       fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     }
   });

@@ -161,7 +161,7 @@ Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
   const double speed = std::abs(*m.residual);
   if (!view.fluid) return view.held || speed <= rest_speed ? Cause::at_rest : Cause::approaching_rest;
   const bool explained = m.predicted_creep && speed <= options.creep_factor * *m.predicted_creep;
-  if (explained) return Cause::creep;
+  if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
   if (view.noisy) return Cause::noise;
   return m.predicted_creep ? Cause::unexplained : Cause::unknown;
 }
@@ -473,6 +473,8 @@ std::string to_string(Cause cause) {
       return "still approaching rest";
     case Cause::creep:
       return "creep of the regularisation";
+    case Cause::creep_or_noise:
+      return "creep of the regularisation or noise, not told apart";
     case Cause::noise:
       return "noise";
     case Cause::unexplained:
@@ -562,9 +564,18 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   for (const fs::path& directory : directories)
     comparison.runs.push_back(view_of(directory, comparison.kind));
   make_labels_unique(comparison.runs);
-  // Computed runs first, exact ones last, otherwise as named.
-  std::stable_partition(comparison.runs.begin(), comparison.runs.end(),
-                        [](const RunView& v) { return !v.exact; });
+  // MPM before OpenFOAM before others, exact solutions last; within a solver the law that stops first; else
+  // as named.
+  const auto rank = [](const RunView& v) {
+    const int solver = v.exact ? 3 : v.solver == "mpm" ? 0 : v.solver == "foam" ? 1 : 2;
+    const int model = v.model == "elasto-viscoplastic" ? 0
+                      : v.model == "papanastasiou"     ? 1
+                      : v.model == "bi-viscous"        ? 2
+                                                       : 3;
+    return std::pair(solver, model);
+  };
+  std::stable_sort(comparison.runs.begin(), comparison.runs.end(),
+                   [&](const RunView& a, const RunView& b) { return rank(a) < rank(b); });
   comparison.title = comparison.runs.front().run.info["title"];
   comparison.radial = comparison.kind == scenes::Kind::slump &&
                       word(comparison.runs.front().run.info, "/settings/geometry/dimension") != "plane";

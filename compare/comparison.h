@@ -28,7 +28,7 @@ struct Options {
 };
 
 /// Why a run still moves at its end, as far as known.
-enum class Cause { at_rest, approaching_rest, creep, noise, unexplained, unknown };
+enum class Cause { at_rest, approaching_rest, creep, creep_or_noise, noise, unexplained, unknown };
 std::string to_string(Cause);
 
 /// What is measured of one run. Spreads in m, velocities in m/s. Empty: not measurable, or without meaning
@@ -89,6 +89,14 @@ struct Pair {
   std::vector<At> at;
 };
 
+/// A sentence of what was found.
+struct Finding {
+  enum class Topic { stop, difference, context };
+  Topic topic = Topic::stop;  ///< when and where it stops; which difference has which cause; references, cost
+                              ///< and limits
+  std::string text;
+};
+
 struct Comparison {
   Options options;
   std::string title;
@@ -96,15 +104,15 @@ struct Comparison {
   bool radial = true;  ///< profiles are against a radius
   std::vector<RunView> runs;
   std::vector<Pair> pairs;
-  std::vector<double> grid;           ///< m, common
-  std::vector<double> frames;         ///< s, at which profiles are shown and written
-  std::vector<double> times;          ///< s, at which pairs are compared
-  std::vector<double> stops;          ///< s, arbitrary stops
-  double end = 0.0;                   ///< s, of the longest run
-  double cell = 0.0;                  ///< m, the coarsest cell; 0 where none is known
-  std::vector<std::string> notes;     ///< what the reader must know before trusting anything
-  std::vector<std::string> findings;  ///< the first paragraph, sentence by sentence
-  std::string fair;                   ///< which comparison is fair
+  std::vector<double> grid;        ///< m, common
+  std::vector<double> frames;      ///< s, at which profiles are shown and written
+  std::vector<double> times;       ///< s, at which pairs are compared
+  std::vector<double> stops;       ///< s, arbitrary stops
+  double end = 0.0;                ///< s, of the longest run
+  double cell = 0.0;               ///< m, the coarsest cell; 0 where none is known
+  std::vector<std::string> notes;  ///< what the reader must know before trusting anything
+  std::vector<Finding> findings;   ///< what was found, in the order in which it is told
+  std::string fair;                ///< which comparison is fair
 };
 
 /// Every run directory named: a folder without run.json stands for the runs in it, and in its folders.

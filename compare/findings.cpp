@@ -44,26 +44,36 @@ std::string arrest_sentence(const RunView& view) {
                      m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", noise);
 }
 
-/// "601 mm at 60 s (26 mm past the arrested 575 mm; growing by 0.25 mm/s, 0.01 mm/s of it predicted)".
+/// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
 std::string fluid_clause(const RunView& view) {
   const Measures& m = view.measures;
   std::string inner;
-  const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : "; ") + part; };
-  if (m.overshoot_reference && !m.overshoot_reference_run.empty()) {
+  const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : ", ") + part; };
+  if (m.overshoot_reference) {
     const double over = std::round(1000.0 * (*m.gauge_end - *m.overshoot_reference));
-    add(over == 0.0 ? "level with the arrested spread"
-                    : fmt::format("{:.0f} mm {} the arrested {}", std::abs(over),
-                                  over > 0.0 ? "past" : "short of", words::spread(*m.overshoot_reference)));
+    add(over == 0.0 ? std::string("level with the arrested spread")
+                    : fmt::format("{:.0f} mm {} the arrested spread", std::abs(over),
+                                  over > 0.0 ? "past" : "short of"));
   }
-  if (m.residual) {
-    std::string part = fmt::format("changing by {}", words::speed(*m.residual));
-    if (m.predicted_creep)
-      part += fmt::format(" where its regularisation alone predicts {}", words::speed(*m.predicted_creep));
-    add(part);
-  }
-  if (view.noisy) add(fmt::format("noisy: {}", view.noise));
-  return fmt::format("{} stands at {} at {}{}", view.label, words::spread(*m.gauge_end), words::time(*m.end),
-                     inner.empty() ? "" : fmt::format(" ({})", inner));
+  if (m.residual)
+    add(fmt::format("{} by {}", *m.residual >= 0.0 ? "growing" : "shrinking",
+                    words::speed(std::abs(*m.residual))));
+  return fmt::format("{} stands at {}{}{}{}", view.label, words::spread(*m.gauge_end),
+                     inner.empty() ? "" : " (", inner, inner.empty() ? "" : noise_clause(view) + ")");
+}
+
+/// The fluids, those that end together in one sentence.
+std::vector<std::string> fluid_sentences(const Comparison& comparison) {
+  std::map<double, std::vector<std::string>> by_end;
+  for (const RunView& view : comparison.runs)
+    if (view.fluid && !view.gauge.empty()) by_end[*view.measures.end].push_back(fluid_clause(view));
+  std::vector<std::string> sentences;
+  for (const auto& [end, clauses] : by_end)
+    sentences.push_back(
+        fmt::format("{} not come to rest by {}: {}.",
+                    clauses.size() == 1 ? "The regularised fluid has" : "The regularised fluids have",
+                    words::time(end), listed(clauses)));
+  return sentences;
 }
 
 /// The latest time at which a pair of runs can be compared.
@@ -73,30 +83,31 @@ const Pair::At* last_gauged(const Pair& pair) {
   return nullptr;
 }
 
+/// What still moves, held against what the regularisation alone predicts.
 std::string cause_sentence(const Comparison& comparison) {
-  std::vector<std::string> creep, noise, unexplained;
+  std::vector<std::string> creep, either, noise, unexplained;
+  const auto speed = [&](double value) {
+    return comparison.kind == scenes::Kind::slump ? words::speed(value) : words::velocity(value);
+  };
   for (const RunView& view : comparison.runs) {
-    if (view.measures.cause == Cause::creep) creep.push_back(view.label);
-    if (view.measures.cause == Cause::noise) noise.push_back(view.label);
-    if (view.measures.cause == Cause::unexplained) unexplained.push_back(view.label);
+    const Measures& m = view.measures;
+    if (!m.residual || !m.predicted_creep || !(*m.predicted_creep > 0.0)) continue;
+    const std::string part = fmt::format("{} ({} of {} predicted)", view.label, speed(std::abs(*m.residual)),
+                                         speed(*m.predicted_creep));
+    if (m.cause == Cause::creep) creep.push_back(part);
+    if (m.cause == Cause::creep_or_noise) either.push_back(part);
+    if (m.cause == Cause::noise) noise.push_back(part);
+    if (m.cause == Cause::unexplained) unexplained.push_back(part);
   }
   std::string text;
-  const auto add = [&](const std::vector<std::string>& labels, const std::string& one,
-                       const std::string& many) {
-    if (!labels.empty())
-      text +=
-          fmt::format("{}{} {}.", text.empty() ? "" : " ", listed(labels), labels.size() == 1 ? one : many);
+  const auto add = [&](const std::vector<std::string>& parts, const std::string& what) {
+    if (!parts.empty()) text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", what, listed(parts));
   };
-  add(creep, "still moves because its regularisation creeps",
-      "still move because their regularisations creep");
-  add(noise,
-      "moves faster than its regularisation explains, and its monitor reports noise: what it adds is "
-      "numerics, not law",
-      "move faster than their regularisations explain, and their monitors report noise: what they add is "
-      "numerics, not law");
-  add(unexplained, "moves faster than its regularisation explains although no noise was reported",
-      "move faster than their regularisations explain although no noise was reported");
-  return text.empty() ? text : fmt::format("The cause of what is left: {}", text);
+  add(creep, "What still moves is no more than the creep of the regularisation");
+  add(either, "Creep of the regularisation or noise, which cannot be told apart here");
+  add(noise, "Noise of the numerics, beyond what the regularisation explains");
+  add(unexplained, "Faster than the regularisation explains, though no noise was reported");
+  return text;
 }
 
 /// Law against solver: the same solver with another law, and the same law in another solver.
@@ -114,8 +125,7 @@ std::string split_sentence(const Comparison& comparison) {
                                  : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
                                                *at->gauge_difference >= 0.0 ? "faster" : "slower");
     (pair.kind == "law" ? law : solver)
-        .push_back(
-            fmt::format("{} is {} than {} at {}", run.label, what, reference.label, words::time(at->time)));
+        .push_back(fmt::format("{} ends {} than {}", run.label, what, reference.label));
   }
   std::string text;
   if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
@@ -141,64 +151,64 @@ std::string trouble_sentences(const Comparison& comparison) {
   return text;
 }
 
+using Topic = Finding::Topic;
+
+void tell(Comparison& comparison, Topic topic, std::string text) {
+  if (!text.empty()) comparison.findings.push_back({topic, capitalised(std::move(text))});
+}
+
 void describe_slump(Comparison& comparison) {
-  auto& out = comparison.findings;
-  std::vector<std::string> fluids, exact;
+  std::vector<std::string> exact;
   for (const RunView& view : comparison.runs) {
     if (view.gauge.empty()) continue;
-    if (view.exact) {
+    if (view.exact)
       exact.push_back(fmt::format("{} ({})", words::spread(*view.measures.gauge_end), view.label));
-    } else if (view.fluid) {
-      fluids.push_back(fluid_clause(view));
-    } else {
-      out.push_back(arrest_sentence(view));
-    }
+    if (!view.exact && !view.fluid) tell(comparison, Topic::stop, arrest_sentence(view));
   }
-  if (!fluids.empty())
-    out.push_back(fmt::format("{} never comes to rest: {}.",
-                              fluids.size() == 1 ? "The regularised fluid" : "A regularised fluid",
-                              listed(fluids, "; ")));
-  out.push_back(split_sentence(comparison));
-  out.push_back(cause_sentence(comparison));
-  if (!exact.empty()) out.push_back(fmt::format("The quasi-static solutions give {}.", listed(exact)));
+  for (std::string& sentence : fluid_sentences(comparison))
+    tell(comparison, Topic::stop, std::move(sentence));
+  tell(comparison, Topic::difference, split_sentence(comparison));
+  tell(comparison, Topic::difference, cause_sentence(comparison));
+  if (!exact.empty())
+    tell(comparison, Topic::context, fmt::format("The quasi-static solutions give {}.", listed(exact)));
+}
+
+std::string duct_sentence(const RunView& view) {
+  const Measures& m = view.measures;
+  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  const std::string largest =
+      words::velocity(*std::max_element(view.gauge.value.begin(), view.gauge.value.end()));
+  if (m.stop_after_step && m.cause != Cause::creep)
+    return fmt::format("{} reaches {} and stops {} after the last change of force{}.", view.label, largest,
+                       words::time(*m.stop_after_step), noise);
+  if (!m.residual) return fmt::format("{} reaches {}{}.", view.label, largest, noise);
+  return fmt::format("{} reaches {} and still moves at {}{}.", view.label, largest,
+                     words::velocity(*m.residual), noise);
 }
 
 void describe_duct(Comparison& comparison) {
-  auto& out = comparison.findings;
-  std::optional<double> bound;
   for (const RunView& view : comparison.runs)
-    if (view.measures.stopping_bound) bound = view.measures.stopping_bound;
-  for (const RunView& view : comparison.runs) {
-    const Measures& m = view.measures;
-    if (view.exact || view.gauge.empty()) continue;
-    const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
-    const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
-    if (m.stop_after_step && m.cause != Cause::creep)
-      out.push_back(fmt::format("{} reaches {} and stops {} after the last change of force{}.", view.label,
-                                words::velocity(largest), words::time(*m.stop_after_step), noise));
-    else
-      out.push_back(fmt::format(
-          "{} reaches {} and is still moving at {}{}{}.", view.label, words::velocity(largest),
-          m.residual ? words::velocity(*m.residual) : std::string("an unknown speed"),
-          m.predicted_creep && *m.predicted_creep > 0.0
-              ? fmt::format(" (its regularisation predicts {})", words::velocity(*m.predicted_creep))
-              : "",
-          noise));
-  }
-  if (bound)
-    out.push_back(
-        fmt::format("The exact material stops within {} of the last change of force.", words::time(*bound)));
+    if (!view.exact && !view.gauge.empty()) tell(comparison, Topic::stop, duct_sentence(view));
+  for (const RunView& view : comparison.runs)
+    if (view.measures.stopping_bound)
+      tell(comparison, Topic::stop,
+           fmt::format("The exact material stops within {} of the last change of force.",
+                       words::time(*view.measures.stopping_bound)));
+  std::vector<std::string> errors;
   for (const Pair& pair : comparison.pairs) {
-    if (pair.kind != "exact" || pair.at.empty()) continue;
+    if (pair.kind != "exact") continue;
+    // Where the exact material is at rest there is nothing to be relative to.
     const auto steady = std::find_if(pair.at.begin(), pair.at.end(),
                                      [](const Pair::At& at) { return at.error.l2_relative > 0.0; });
     if (steady != pair.at.end())
-      out.push_back(fmt::format("{} differs from the exact steady profile by {} in L2 at {}.",
-                                comparison.runs[pair.run].label, words::percent(steady->error.l2_relative),
-                                words::time(steady->time)));
+      errors.push_back(fmt::format("{} by {} at {}", comparison.runs[pair.run].label,
+                                   words::percent(steady->error.l2_relative), words::time(steady->time)));
   }
-  out.push_back(split_sentence(comparison));
-  out.push_back(cause_sentence(comparison));
+  if (!errors.empty())
+    tell(comparison, Topic::difference,
+         fmt::format("In L2 the profiles differ from the exact steady one: {}.", listed(errors)));
+  tell(comparison, Topic::difference, split_sentence(comparison));
+  tell(comparison, Topic::difference, cause_sentence(comparison));
 }
 
 std::string fair_slump(const Comparison& comparison) {
@@ -233,8 +243,7 @@ std::string fair_slump(const Comparison& comparison) {
 
 void describe(Comparison& comparison) {
   comparison.findings.clear();
-  if (const std::string trouble = trouble_sentences(comparison); !trouble.empty())
-    comparison.findings.push_back(trouble);
+  tell(comparison, Topic::stop, trouble_sentences(comparison));
   if (comparison.kind == scenes::Kind::slump) {
     describe_slump(comparison);
     comparison.fair = fair_slump(comparison);
@@ -249,13 +258,12 @@ void describe(Comparison& comparison) {
         "agree on velocity "
         "profiles long before they agree on arrest: judge by both.";
   }
-  comparison.findings.push_back(cost_sentence(comparison));
+  tell(comparison, Topic::context, cost_sentence(comparison));
   if (comparison.kind == scenes::Kind::slump && comparison.cell > 0.0)
-    comparison.findings.push_back(fmt::format(
-        "Each run stands on one grid: differences below a cell ({:g} mm) are not settled by this comparison.",
-        1000.0 * comparison.cell));
-  std::erase_if(comparison.findings, [](const std::string& sentence) { return sentence.empty(); });
-  for (std::string& sentence : comparison.findings) sentence = capitalised(sentence);
+    tell(comparison, Topic::context,
+         fmt::format("Each run stands on one grid: differences below a cell ({:g} mm) are not settled by "
+                     "this comparison.",
+                     1000.0 * comparison.cell));
 }
 
 }  // namespace flowrest::compare

@@ -143,7 +143,7 @@ Json to_json(const Comparison& comparison) {
                {"format_version", 1},
                {"title", comparison.title},
                {"kind", scenes::to_string(comparison.kind)},
-               {"findings", comparison.findings},
+               {"findings", Json::array()},
                {"notes", comparison.notes},
                {"fair", comparison.fair},
                {"thresholds",
@@ -154,6 +154,9 @@ Json to_json(const Comparison& comparison) {
                  {"residual_window_s", o.residual_window},
                  {"creep_factor", o.creep_factor},
                  {"spread_depth_mm", 3.0}}}};
+  const char* topics[] = {"stop", "difference", "context"};
+  for (const Finding& finding : comparison.findings)
+    json["findings"].push_back({{"topic", topics[static_cast<int>(finding.topic)]}, {"text", finding.text}});
   Json columns = Json::array();
   for (const RunView& view : comparison.runs) {
     const Json& info = view.run.info;

@@ -85,6 +85,9 @@
     chart.ctx.fillRect(0, 0, chart.width, chart.height);
     chart.ctx.restore();
   }};
+  // Chart.js leaves the dashes out of its line symbols.
+  const dashedLabels = chart => Chart.defaults.plugins.legend.labels.generateLabels(chart).map(label =>
+    ({...label, lineDash: chart.data.datasets[label.datasetIndex].borderDash, lineWidth: 2.4}));
   const draw = (id, type, title, datasets, scales, options = {}) => {
     const canvas = byId(id);
     const full = comparison.title + ': ' + title;
@@ -99,7 +102,7 @@
         plugins: {
           title: {display: true, text: full, align: 'start', font: {size: 14, weight: '600'}, padding: {bottom: 8}},
           legend: {display: options.legend !== false, position: 'bottom', align: 'start',
-            labels: {usePointStyle: !options.labels, pointStyleWidth: 34, boxHeight: 7, padding: 12}},
+            labels: {usePointStyle: !options.labels, pointStyleWidth: 40, boxHeight: 7, padding: 12, ...(options.labels ? {} : {generateLabels: dashedLabels})}},
           tooltip: {usePointStyle: !options.labels, callbacks: options.tooltip || {}},
         },
       },
@@ -110,15 +113,7 @@
     return chart;
   };
   const hide = id => { byId(id).hidden = true; };
-  const repaint = () => { for (const chart of charts) { paint(chart); chart.update('none'); } drawSwatches(); };
-
-  // ---- The first paragraph opens with its first sentence
-  const lead = byId('lead');
-  const stop = lead.textContent.search(/\.\s+[A-Z]/);
-  if (stop > 0) {
-    const text = lead.textContent;
-    lead.replaceChildren(element('span', {class: 'opening'}, text.slice(0, stop + 1)), text.slice(stop + 1));
-  }
+  const repaint = () => { for (const chart of charts) { paint(chart); chart.update(); } drawSwatches(); };
 
   // ---- Which runs are shown
   const swatches = [];
@@ -130,7 +125,7 @@
       run.shown = box.checked;
       for (const chart of charts) {
         chart.data.datasets.forEach((dataset, i) => { if (dataset.run === run) chart.setDatasetVisibility(i, run.shown); });
-        chart.update('none');
+        chart.update();
       }
     });
     const sample = element('span', {'aria-hidden': 'true'});
@@ -150,13 +145,13 @@
   const heldDash = run => isNumber(run.held_from) ? {segment: {borderDash: c => c.p0.parsed.x >= run.held_from ? [1, 5] : undefined}} : {};
   const timeScale = log => log
     ? axis('time (s, logarithmic)', {type: 'logarithmic', min: Math.max(data.end / 1000, data.time[1] || data.end / 1000), max: data.end,
-        ticks: {callback: v => [1, 2, 5].includes(Number(v.toExponential(0)[0])) ? String(Number(v.toPrecision(1))) : ''}})
+        ticks: {autoSkip: false, maxRotation: 0, callback: v => [1, 2, 5].includes(Number(v.toExponential(0)[0])) ? String(Number(v.toPrecision(1))) : ''}})
     : axis('time (s)', {type: 'linear', min: 0, max: data.end});
   const timeTip = {title: items => 't = ' + shortTime(items[0].parsed.x),
     label: item => isNumber(item.parsed.y) ? `${item.dataset.label}: ${significant(item.parsed.y, 4)} ${data.gauge.unit}` : ''};
   const gaugeChart = draw('chart-gauge', 'line', gaugeTitle,
     runs.map(run => lineDataset(run, zip(data.time, run.gauge), heldDash(run))),
-    {x: timeScale(false), y: axis(`${data.gauge.name} (${data.gauge.unit})`, {beginAtZero: !slump})}, {tooltip: timeTip});
+    {x: timeScale(false), y: axis(`${data.gauge.name} (${data.gauge.unit})`)}, {tooltip: timeTip});
   byId('caption-gauge').textContent = slump
     ? 'Spread: twice the radius at which the depth falls through 3 mm. A thin dotted tail continues a run that has come to rest.'
     : 'Velocity of the plug. The exact line is the steady state of each stage of the force.';
@@ -165,8 +160,20 @@
     logBox.checked = log;
     gaugeChart.options.scales.x = timeScale(log);
     paint(gaugeChart);
-    gaugeChart.update('none');
+    gaugeChart.update();
   };
+  // A slump's whole rise hides what matters: how its runs part at the end.
+  const wholeBox = byId('whole');
+  const ends = runs.map(run => [...run.gauge].reverse().find(isNumber)).filter(isNumber);
+  const setWhole = whole => {
+    wholeBox.checked = whole;
+    gaugeChart.options.scales.y.min = whole || !slump || !ends.length ? undefined : 10 * Math.floor(0.9 * Math.min(...ends) / 10);
+    gaugeChart.options.scales.y.beginAtZero = whole || !slump;
+    gaugeChart.update();
+  };
+  if (!slump) wholeBox.parentElement.hidden = true;
+  wholeBox.addEventListener('change', () => { setWhole(wholeBox.checked); remember('range', wholeBox.checked ? 'whole' : null); });
+  setWhole(state.get('range') === 'whole');
   logBox.addEventListener('change', () => { setLog(logBox.checked); remember('axis', logBox.checked ? 'log' : null); });
   if (state.get('axis') === 'log') setLog(true);
 
@@ -205,7 +212,7 @@
         const top = Math.max(1, ...runs.filter(r => r.shown).map(r => r.profiles[frame] ? Math.max(...r.profiles[frame]) : 0));
         chart.options.scales.y.max = [10, 20, 50, 75, 100, 150, 200, 300, 400, 600, 1000].find(m => m >= 1.05 * top);
       }
-      chart.update('none');
+      chart.update();
     };
     const nearest = t => data.frames.reduce((best, f, i) => Math.abs(f - t) < Math.abs(data.frames[best] - t) ? i : best, 0);
     let timer = null;
@@ -307,7 +314,7 @@
     const chart = draw('chart-residual', 'bar', slump ? 'growth of the spread over the last seconds' : 'plug velocity over the last seconds', [
       {label: 'measured', data: moving.map(run => Math.max(Math.abs(run.measures[residualKey]), floor)), barPercentage: .8},
       {label: 'predicted by the regularisation alone', data: moving.map(run => run.measures[creepKey] > 0 ? run.measures[creepKey] : null), barPercentage: .8},
-    ], {x: axis(`speed (${residualUnit}, logarithmic)`, {type: 'logarithmic', min: floor,
+    ], {x: axis(`speed (${residualUnit}, logarithmic)`, {type: 'logarithmic', min: floor, max: Math.pow(10, Math.ceil(Math.log10(Math.max(...values, floor * 10)))),
           ticks: {callback: v => /^1(?:e|$)/.test(v.toExponential()) ? String(Number(v.toPrecision(1))) : ''}}),
         y: axis('', {ticks: {autoSkip: false}})},
       {labels: moving.map(run => run.name), tooltip: {label: item => `${item.dataset.label}: ${significant(item.parsed.x, 2)} ${residualUnit}`}});
@@ -317,7 +324,7 @@
     };
     chart.colourBars = colourBars;
     colourBars();
-    chart.update('none');
+    chart.update();
     byId('caption-residual').textContent = slump
       ? `Measured: the median slope of the spread over the last ${limits.residual_window_s} s. Predicted: on the arrested profile, whose base carries the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays similar then grows in diameter by 4 u. A run of a law that comes to rest has no predicted creep.`
       : 'Predicted: the steady velocity of the regularised law under the last force, from its flow curve.';
@@ -404,7 +411,7 @@
       {labels: priced.map(run => run.name), legend: false, tooltip: {label: item => `${significant(item.parsed.x, 3)} s`}});
     chart.colourBars = () => { chart.data.datasets[0].backgroundColor = palette.lines[2]; };
     chart.colourBars();
-    chart.update('none');
+    chart.update();
     byId('caption-cost').textContent = 'CPU seconds summed over all threads, on the machine named under Provenance.';
     table('table-cost', [
       nameColumn,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
 
 #include "compare/report/sources.h"
 
@@ -38,6 +40,12 @@ std::string escaped_html(const std::string& text) {
     }
   }
   return escaped;
+}
+
+/// Text of the page in which no number is parted from its unit at the end of a line.
+std::string prose_html(const std::string& text) {
+  static const std::regex unit("([0-9]) (mm/s|mm|m/s|s|min|h|%|Pa)");
+  return std::regex_replace(escaped_html(text), unit, "$1&nbsp;$2");
 }
 
 /// JSON that may stand inside a script element.
@@ -131,16 +139,28 @@ void replace(std::string& page, std::string_view mark, std::string_view text) {
 }  // namespace
 
 std::string report_page(const Comparison& comparison, const Json& comparison_json) {
+  // The first paragraph says when and where it stops; its first sentence is set large.
+  std::map<Finding::Topic, std::string> words;
+  for (const Finding& finding : comparison.findings) {
+    std::string& paragraph = words[finding.topic];
+    const bool opening = finding.topic == Finding::Topic::stop && paragraph.empty();
+    const std::string text = prose_html(finding.text);
+    paragraph += opening ? fmt::format("<span class=\"opening\">{}</span> ", text) : text + ' ';
+  }
   std::string lead, notes;
-  for (const std::string& sentence : comparison.findings) lead += escaped_html(sentence) + ' ';
+  const std::pair<Finding::Topic, const char*> order[] = {{Finding::Topic::stop, "lead"},
+                                                          {Finding::Topic::difference, "difference"},
+                                                          {Finding::Topic::context, "context"}};
+  for (const auto& [topic, id] : order)
+    if (words.contains(topic)) lead += fmt::format("<p id=\"{}\">{}</p>\n", id, words[topic]);
   for (const std::string& note : comparison.notes)
-    notes += fmt::format("<p class=\"note\">{}</p>\n", escaped_html(note));
+    notes += fmt::format("<p class=\"note\">{}</p>\n", prose_html(note));
   std::string page(sources::page_html());
   // From the end of the page to its start: the first occurrence of a mark is then always the template's own.
   replace(page, "{{script}}", sources::page_js());
   replace(page, "{{chart}}", chart_library());
   replace(page, "{{data}}", script_json(page_data(comparison, comparison_json)));
-  replace(page, "{{fair}}", escaped_html(comparison.fair));
+  replace(page, "{{fair}}", prose_html(comparison.fair));
   replace(page, "{{notes}}", notes);
   replace(page, "{{lead}}", lead);
   replace(page, "{{heading}}", escaped_html(comparison.title));
