@@ -105,16 +105,24 @@ std::string FileTail::read() {
 }
 
 void NoiseMonitor::add(const SolverStep& step) {
-  if (block_.empty()) block_start_ = step.time;
-  block_.push_back(step.initial_residual_u);
-  if (block_.size() < block) return;
+  block_.push_back(step);
+  if (block_.size() == block_steps) end_block();
+}
+
+void NoiseMonitor::finish() {
+  if (block_.size() >= fewest_steps) end_block();
+}
+
+void NoiseMonitor::end_block() {
   if (blocks_++ > 0) {
-    const auto middle = block_.begin() + static_cast<std::ptrdiff_t>(block / 2);
-    std::nth_element(block_.begin(), middle, block_.end());
+    std::vector<double> residuals;
+    for (const auto& step : block_) residuals.push_back(step.initial_residual_u);
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
     largest_median_ = std::max(largest_median_, *middle);
     if (*middle > bound) {
-      if (noisy_++ == 0) first_noisy_ = block_start_;
-      last_noisy_ = step.time;
+      if (noisy_++ == 0) first_noisy_ = block_.front().time;
+      last_noisy_ = block_.back().time;
     }
   }
   block_.clear();
@@ -125,13 +133,14 @@ double NoiseMonitor::noisy_share() const {
 }
 
 std::string NoiseMonitor::verdict() const {
+  if (blocks_ < 2)
+    return fmt::format("unjudged: the run has fewer than {} steps", block_steps + fewest_steps);
   if (noisy_ == 0) return "sound";
   return fmt::format(
       "noisy: the initial residual of U passes {} (median of {} steps) in {:.0f} % of the run, between "
       "{:.2f} and "
-      "{:.2f} s, and reaches {:.2g}; a sound run stays below it, so part of the spreading is noise of the "
-      "time step",
-      bound, block, std::max(1.0, 100.0 * noisy_share()), first_noisy_, last_noisy_, largest_median_);
+      "{:.2f} s, and reaches {:.2g}; part of the spreading may be noise of the time step",
+      bound, block_steps, std::max(1.0, 100.0 * noisy_share()), first_noisy_, last_noisy_, largest_median_);
 }
 
 }  // namespace flowrest::foam

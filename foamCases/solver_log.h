@@ -64,22 +64,28 @@ class FileTail {
 
 /// The noise monitor. In a sound run the velocity hardly changes over a step, so the initial residual of U
 /// stays below 0.025 once the concrete is released; where splitting or step fail it chatters at 0.2 to 1, and
-/// the chatter spreads the concrete.
+/// the chatter can spread the concrete. Blocks of steps are judged by their median, the first one (the
+/// release) not at all.
 class NoiseMonitor {
  public:
   static constexpr double bound = 0.05;
-  static constexpr std::size_t block =
-      50;  ///< steps; each block is judged by its median, the first one not at all
+  static constexpr std::size_t block_steps = 50;
+  static constexpr std::size_t fewest_steps =
+      10;  ///< that a block cut short by the end must have to be judged
 
   void add(const SolverStep&);
-  /// "sound", or "noisy: " with when and how much.
+  /// Judges the block the run ended in.
+  void finish();
+
+  /// "sound", "noisy: " with when and how much, or "unjudged: " with why.
   std::string verdict() const;
   double noisy_share() const;  ///< of the blocks judged
   double largest_median() const { return largest_median_; }
 
  private:
-  std::vector<double> block_;
-  double block_start_ = 0.0;
+  void end_block();
+
+  std::vector<SolverStep> block_;
   std::size_t blocks_ = 0;
   std::size_t noisy_ = 0;
   double first_noisy_ = 0.0;
