@@ -184,13 +184,17 @@ void relocate(Value& value, const Location& where) {
   }
 }
 
-/// The value of a setting as TOML; what is no TOML is a word that stands without quotes.
-Value setting_value(const std::string& text, const Location& where) {
-  Faults unread;
-  Value value{where, text};
-  if (!is_readable(text, where, unread)) return value;
-  const std::optional<toml::table> table = parsed("value = " + text, where.source, unread);
-  if (table && table->size() == 1) value = to_value(*table->get("value"), where.source);
+/// The value of a setting: TOML, or else text that stands without quotes.
+std::optional<Value> setting_value(const std::string& text, const Location& where, Faults& faults) {
+  if (!is_readable(text, where, faults)) return std::nullopt;
+  Faults not_toml;
+  std::optional<toml::table> table = parsed("value = " + text, where.source, not_toml);
+  if (!table || table->size() != 1) table = parsed("value = " + toml_string(text), where.source, not_toml);
+  if (!table) {
+    faults.add(where, "is not valid UTF-8");
+    return std::nullopt;
+  }
+  Value value = to_value(*table->get("value"), where.source);
   relocate(value, where);
   return value;
 }
@@ -215,7 +219,8 @@ Given read_setting(const std::string& setting, Faults& faults) {
   } else if (path == "extends") {
     faults.add(given.start, "cannot change what a scene extends; allowed: every other key");
   } else if (find_key(path)) {
-    given.values[path] = setting_value(trimmed(setting.substr(equals + 1)), given.start);
+    std::optional<Value> value = setting_value(trimmed(setting.substr(equals + 1)), given.start, faults);
+    if (value) given.values[path] = *std::move(value);
     if (!section.empty()) given.sections[section] = given.start;
   } else if (!section.empty() && !is_section(section)) {
     faults.add(given.start, unknown_section(section));

@@ -7,26 +7,6 @@ namespace flowrest::scenes {
 
 using Json = nlohmann::ordered_json;
 
-namespace {
-
-/// A TOML basic string.
-std::string toml_string(const std::string& text) {
-  std::string string = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      string += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      string += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
-    } else {
-      string += c;
-    }
-  }
-  string += '"';
-  return string;
-}
-
-}  // namespace
-
 std::string toml_value(const Json& value) {
   if (value.is_string()) return toml_string(value.get<std::string>());
   if (value.is_number_float()) return exact_text(value.get<double>());

@@ -219,6 +219,7 @@ TEST(Overrides, AreRefusedByName) {
   EXPECT_THAT(refusal("mpm.scheme=papr"),
               HasSubstr("--set mpm.scheme=papr: mpm.scheme is \"papr\", nearest is \"paper\""));
   EXPECT_THAT(refusal("extends=roussel-slump"), HasSubstr("cannot change what a scene extends"));
+  EXPECT_THAT(refusal("title=a \xff b"), HasSubstr("is not valid UTF-8"));
   EXPECT_THAT(refusal("=1"), HasSubstr("--set =1: unknown key \"\""));
   EXPECT_THAT(refusal(""), HasSubstr("has no value"));
   EXPECT_THAT(refusal("material.density=1\nmpm.cell=2"),

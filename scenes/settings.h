@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "scenes/schema.h"
 
 namespace flowrest::scenes {

@@ -30,6 +30,21 @@ std::string escaped(const std::string& text) {
 
 std::string quoted(const std::string& text) { return fmt::format("\"{}\"", escaped(text)); }
 
+std::string toml_string(const std::string& text) {
+  std::string string = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      string += {'\\', c};
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      string += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
+    } else {
+      string += c;
+    }
+  }
+  string += '"';
+  return string;
+}
+
 namespace {
 
 /// Insertions, deletions, replacements and swaps of neighbours (optimal string alignment) from one word to

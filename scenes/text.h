@@ -18,6 +18,9 @@ std::string quoted(const std::string&);
 /// The candidate with the fewest slips of the pen from `word`; empty where none is near.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
+/// A TOML basic string.
+std::string toml_string(const std::string&);
+
 /// The shortest text that reads back as exactly this number, always recognisable as a floating-point one.
 std::string exact_text(double);
 
