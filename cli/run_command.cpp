@@ -1,0 +1,217 @@
+#include "cli/run_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <deque>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "runs/process.h"
+#include "runs/run_directory.h"
+#include "scenes/scene.h"
+
+namespace flowrest::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunCommandOptions {
+  std::vector<std::string> scenes, set;
+  std::string output = "out";
+  int jobs = 0;
+};
+
+/// One run of one scene, as a call of this program.
+struct Job {
+  std::string name;  ///< "roussel-slump foam-papanastasiou"
+  fs::path directory;
+  std::vector<std::string> arguments;
+};
+
+/// A job under way: its process and how much of its log has been shown.
+class RunningJob {
+ public:
+  RunningJob(Job job, const fs::path& program, const fs::path& logs)
+      : job_(std::move(job)),
+        log_(logs / (job_.directory.filename().string() + ".log")),
+        process_(program, job_.arguments, fs::current_path(), log_, {}) {}
+
+  const Job& job() const { return job_; }
+  std::optional<runs::ProcessEnd> poll() { return process_.poll(); }
+  void signal(int number) { process_.signal(number); }
+
+  /// Prints the whole lines that the log has gained.
+  void show_progress() {
+    std::ifstream file(log_);
+    file.seekg(shown_);
+    for (std::string line; std::getline(file, line) && !file.eof();) {
+      fmt::print("{}\n", line);
+      shown_ = file.tellg();
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  Job job_;
+  fs::path log_;
+  std::streamoff shown_ = 0;
+  runs::Process process_;
+};
+
+void add_settings(std::vector<std::string>& arguments, const std::vector<std::string>& set) {
+  for (const auto& s : set) arguments.insert(arguments.end(), {"--set", s});
+}
+
+/// The runs a scene names, the longest kind first so that no core waits for it at the end.
+std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, const fs::path& folder,
+                        const RunCommandOptions& options, bool share_cores) {
+  std::deque<Job> jobs;
+  const auto add = [&](const std::string& solver, scenes::Model model, bool one_thread) {
+    Job job;
+    const std::string model_name = scenes::to_string(model);
+    job.name = fmt::format("{} {} {}", scene.name, solver, model_name);
+    job.directory = folder / (solver + "-" + model_name);
+    job.arguments = {solver, named, "--model", model_name, "-o", job.directory.string()};
+    add_settings(job.arguments, options.set);
+    if (one_thread) add_settings(job.arguments, {"mpm.threads=1"});
+    jobs.push_back(std::move(job));
+  };
+#ifdef FLOWREST_HAS_FOAM
+  for (const auto model : scene.runs.foam) add("foam", model, false);
+#endif
+  for (const auto model : scene.runs.mpm) add("mpm", model, share_cores && scene.mpm.threads == 0);
+  return jobs;
+}
+
+class Scheduler {
+ public:
+  Scheduler(std::deque<Job> jobs, int at_once, fs::path logs) : waiting_(std::move(jobs)), at_once_(at_once), logs_(std::move(logs)) {}
+
+  /// Runs everything; returns the exit code to end with: that of the first job that failed, 130 where interrupted.
+  int run() {
+    const runs::InterruptGuard guard;
+    const fs::path program = fs::read_symlink("/proc/self/exe");
+    while (!waiting_.empty() || !running_.empty()) {
+      if (runs::InterruptGuard::count() > 0) interrupt();
+      while (!waiting_.empty() && static_cast<int>(running_.size()) < at_once_) {
+        fmt::print("{}: started, in {}\n", waiting_.front().name, waiting_.front().directory.string());
+        running_.push_back(std::make_unique<RunningJob>(std::move(waiting_.front()), program, logs_));
+        waiting_.pop_front();
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      for (auto& job : running_) job->show_progress();
+      collect();
+    }
+    return code_;
+  }
+
+ private:
+  void interrupt() {
+    waiting_.clear();
+    if (!std::exchange(interrupted_, true))
+      for (auto& job : running_) job->signal(SIGINT);
+    code_ = 130;
+  }
+
+  void collect() {
+    std::erase_if(running_, [&](const std::unique_ptr<RunningJob>& job) {
+      const auto end = job->poll();
+      if (!end) return false;
+      job->show_progress();
+      if (!end->good()) {
+        fmt::print("{}: ended with {}\n", job->job().name, end->how());
+        if (code_ == 0) code_ = end->signal ? 1 : end->exit_code;
+      }
+      return true;
+    });
+  }
+
+  std::deque<Job> waiting_;
+  int at_once_;
+  fs::path logs_;
+  std::vector<std::unique_ptr<RunningJob>> running_;
+  bool interrupted_ = false;
+  int code_ = 0;
+};
+
+#ifdef FLOWREST_HAS_COMPARE
+/// Runs another of this program's commands, its output going where ours goes; returns its exit code.
+int call(const std::vector<std::string>& arguments, const fs::path& log) {
+  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
+  while (!process.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::ifstream file(log);
+  for (std::string line; std::getline(file, line);) fmt::print("{}\n", line);
+  const auto end = process.poll();
+  return end->signal ? 1 : end->exit_code;
+}
+
+/// Exact solutions and the report over every run that left a directory; returns the first exit code that is not 0.
+int compare_runs(const scenes::Scene& scene, const std::string& named, const fs::path& folder, std::vector<fs::path> made,
+                 const RunCommandOptions& options) {
+  int code = 0;
+  if (scene.runs.exact) {
+    std::vector<std::string> exact = {"exact", named, "-o", (folder / "exact").string()};
+    add_settings(exact, options.set);
+    code = call(exact, folder / "logs" / "exact.log");
+    if (code == 0) made.push_back(folder / "exact");
+  }
+  std::vector<std::string> arguments = {"compare"};
+  for (const auto& run : made)
+    if (fs::exists(run)) arguments.push_back(run.string());
+  arguments.insert(arguments.end(), {"-o", (folder / "report").string()});
+  const int compared = call(arguments, folder / "logs" / "compare.log");
+  return code == 0 ? compared : code;
+}
+#endif
+
+int run_scene(const std::string& named, const RunCommandOptions& options) {
+  scenes::Overrides overrides;
+  overrides.set = options.set;
+  const scenes::Scene scene = scenes::load_scene(named, overrides);
+  const fs::path folder = fs::path(options.output) / scene.name;
+  const fs::path logs = folder / "logs";
+  fs::create_directories(logs);
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int at_once = options.jobs > 0 ? options.jobs : cores;
+  auto jobs = jobs_of(scene, named, folder, options, at_once > 1);
+  if (jobs.empty() && !scene.runs.exact) throw scenes::SceneError(fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}", scene.path.string()));
+  std::vector<fs::path> made;
+  for (const auto& job : jobs) made.push_back(job.directory);
+  int code = Scheduler(std::move(jobs), at_once, logs).run();
+#ifdef FLOWREST_HAS_COMPARE
+  if (code != 130) {
+    const int compared = compare_runs(scene, named, folder, made, options);
+    if (code == 0) code = compared;
+  }
+#endif
+  return code;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  auto options = std::make_shared<RunCommandOptions>();
+  CLI::App* command = app.add_subcommand("run", "Make every run that a scene names, then compare them: the main job");
+  command->add_option("scene", options->scenes, "Scenes, by name or path")->required();
+  command->add_option("--set", options->set, "KEY=VALUE: override a key in all of them")->allow_extra_args(false);
+  command->add_option("-o,--output", options->output, "Folder that receives SCENE/RUN and SCENE/report")->capture_default_str();
+  command->add_option("-j,--jobs", options->jobs, "Runs at once (as many as there are cores)");
+  command->callback([options] {
+    int code = 0;
+    for (const auto& scene : options->scenes) {
+      const int scene_code = run_scene(scene, *options);
+      if (code == 0) code = scene_code;
+      if (scene_code == 130) break;
+    }
+    if (code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace flowrest::cli

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flowrest::mpm {
+
+/// An HDF5 file written to a temporary name and put in place by `commit`, or read; closed by itself.
+/// Every method throws runs::RunError naming the file and the dataset where HDF5 refuses.
+class Hdf5File {
+ public:
+  static Hdf5File create(const std::filesystem::path&);
+  static Hdf5File open(const std::filesystem::path&);
+  ~Hdf5File();
+  Hdf5File(Hdf5File&&) noexcept;
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+
+  void group(const std::string& path);
+  /// One- or two-dimensional data; `columns` 0 makes it one-dimensional.
+  void write(const std::string& path, std::span<const double>, std::size_t columns = 0);
+  void write(const std::string& path, std::span<const float>, std::size_t columns = 0);
+  void write(const std::string& path, std::span<const std::int64_t>, std::size_t columns = 0);
+  void write(const std::string& path, std::span<const std::int32_t>, std::size_t columns = 0);
+  void write(const std::string& path, std::span<const std::uint8_t>, std::size_t columns = 0);
+  void attribute(const std::string& group, const std::string& name, std::span<const std::int64_t>);
+  /// A fixed-length ASCII string, as VTKHDF asks for.
+  void attribute(const std::string& group, const std::string& name, const std::string& text);
+
+  std::vector<double> read_doubles(const std::string& path) const;
+  std::vector<std::int32_t> read_integers(const std::string& path) const;
+  std::string read_text(const std::string& group, const std::string& name) const;
+
+  /// Puts a created file in place of what stood there, atomically.
+  void commit();
+
+ private:
+  Hdf5File() = default;
+  void write(const std::string& path, hid_t type, const void* data, std::size_t count, std::size_t columns);
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::filesystem::path path_, temporary_;
+  hid_t file_ = -1;
+};
+
+}  // namespace flowrest::mpm

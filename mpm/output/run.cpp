@@ -1,0 +1,329 @@
+#include "mpm/output/run.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "mpm/output/checkpoint.h"
+#include "mpm/output/gauges.h"
+#include "mpm/output/snapshot.h"
+#include "mpm/sampling/sampling.h"
+#include "mpm/solver/settings.h"
+#include "runs/depth.h"
+#include "runs/progress.h"
+#include "scenes/step_limits.h"
+
+namespace flowrest::mpm {
+
+namespace {
+
+/// The growth of the spread still to come is at most D eps / 5, eps the overstress: from D ~ tau0^(-1/5) (Yu et al. 2026,
+/// Eq. 51), every part still yielding at most eps above its yield stress.
+constexpr double growth_per_overstress = 0.2;
+/// More energy made by the discretisation than this share of the energy scale is an instability.
+constexpr double energy_made_allowed = 0.05;
+/// Below this many cells over the depth a slump's shear layer is not resolved.
+constexpr double cells_over_depth_wanted = 3.0;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class MpmRun {
+ public:
+  MpmRun(const scenes::Scene& scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint)
+      : scene_(scene),
+        options_(options),
+        settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
+        gauges_(scene_),
+        factor_(whole_body_factor(scene)),
+        writer_(checkpoint ? runs::RunWriter::resume(options.directory, scene, checkpoint->run.time)
+                           : runs::RunWriter(options.directory, scene, "mpm")),
+        snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.time : -1.0),
+        progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)), scene.time.end, options.quiet) {
+    cpu_begin_ = runs::cpu_seconds();
+    wall_begin_ = seconds_now();
+    if (checkpoint) {
+      state_ = checkpoint->run;
+      solver_ = make_solver(settings_, checkpoint->solver);
+      cpu_begin_ -= state_.cpu;
+      wall_begin_ -= state_.wall;
+    } else {
+      solver_ = make_solver(settings_, seed_particles(scene));
+      state_.largest_pressure = scenes::pressure_at_rest(scene);
+    }
+    if (!checkpoint) std::filesystem::remove(options.directory / "checkpoint.h5");
+    describe();
+    writer_.history_columns(gauges_.columns());
+  }
+
+  RunResult run() {
+    try {
+      return loop();
+    } catch (const runs::NumericsError& error) {
+      return_after_failure(error.what());
+      throw;
+    }
+  }
+
+ private:
+  static SolverSettings with_instruction_set(SolverSettings s, const std::string& set) {
+    s.instruction_set = set;
+    return s;
+  }
+
+  RunResult loop() {
+    if (state_.histories == 0.0) {
+      gauge();
+      state_.initial_energy = total_energy();
+      output();
+    } else {
+      gauge();
+    }
+    while (state_.time < scene_.time.end) {
+      if (options_.interrupted()) return stop(runs::Status::interrupted, "interrupted; go on with: flowrest mpm --resume " + options_.directory.string());
+      advance();
+      if (due(state_.histories, scene_.output.history_interval) || state_.time >= scene_.time.end) {
+        gauge();
+        output();
+        if (at_rest()) return stop(runs::Status::at_rest, "");
+      }
+    }
+    return stop(runs::Status::end_time, "");
+  }
+
+  bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
+
+  /// The step: fixed, or Courant-controlled with the stiffest pressure's sound speed and the largest speed (NUMERICS: the
+  /// stable limit counts |v| too), shortened a little so that it lands on the next row of the history.
+  double next_step() const {
+    const double stiffening = 1.0 + settings_.state.exponent * std::max(state_.largest_pressure, 0.0) / settings_.state.bulk_modulus;
+    const double sound = scene_.material.longitudinal_speed() * std::sqrt(stiffening);
+    double step = scene_.mpm.time_step ? *scene_.mpm.time_step : scene_.mpm.cfl * settings_.cell / (sound + state_.largest_speed);
+    if (!scene_.mpm.time_step && settings_.explicit_fluid) step = std::min(step, scenes::step_limits(scene_).viscous);
+    const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
+    const double left = target - state_.time;
+    if (step >= left * (1.0 - 1e-12)) return left;
+    return step > 0.5 * left ? 0.5 * left : step;
+  }
+
+  void advance() {
+    const double step = next_step();
+    const StepResult result = solver_->step(step, acceleration_at(scene_, state_.time));
+    state_.step = step;
+    state_.steps += 1.0;
+    state_.largest_speed = result.largest_speed;
+    state_.largest_pressure = result.largest_pressure;
+    state_.dissipated += factor_ * result.dissipated;
+    const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
+    state_.time = step >= target - state_.time ? target : state_.time + step;
+    const double sound = scene_.material.longitudinal_speed();
+    if (result.largest_speed > 2.0 * sound + free_fall_speed())
+      throw runs::NumericsError(fmt::format("a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
+                                            "the step or the material is unstable", result.largest_speed, sound));
+  }
+
+  double free_fall_speed() const {
+    const double drop = scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : 0.0;
+    return std::sqrt(2.0 * scene_.forces.gravity * drop);
+  }
+
+  double total_energy() const {
+    const Energies& e = measures_.energies;
+    return e.kinetic + e.potential + e.elastic;
+  }
+
+  void gauge() {
+    measures_ = gauges_.measure(*solver_);
+    Energies& e = measures_.energies;
+    e.dissipated = state_.dissipated;
+    // Work of a duct's driving force, by the trapezoidal rule over the rows of the history.
+    const double rate = acceleration_at(scene_, state_.time)[0] * scene_.material.density * measures_.volume_at_rest * measures_.mean_velocity;
+    state_.work += 0.5 * (rate + state_.work_rate) * (state_.time - state_.work_time);
+    state_.work_rate = rate;
+    state_.work_time = state_.time;
+    if (state_.steps > 0.0) e.numerical = state_.initial_energy + state_.work - total_energy() - e.dissipated;
+    check_bounds();
+  }
+
+  void check_bounds() const {
+    const double scale = std::max({std::abs(state_.initial_energy), state_.work, state_.dissipated});
+    if (measures_.energies.numerical < -energy_made_allowed * scale)
+      throw runs::NumericsError(fmt::format("the discretisation has made {:.3g} J of {:.3g} J: the step is unstable", -measures_.energies.numerical, scale));
+    if (scene_.kind != scenes::Kind::slump) return;
+    const auto& g = scene_.slump();
+    if (measures_.farthest > g.domain_radius)
+      throw runs::NumericsError(fmt::format("the material has reached geometry.domain_radius = {} m at {:.4g} s: enlarge the domain", g.domain_radius, state_.time));
+    if (measures_.highest > g.domain_height)
+      throw runs::NumericsError(fmt::format("the material has risen to geometry.domain_height = {} m at {:.4g} s", g.domain_height, state_.time));
+  }
+
+  void output() {
+    writer_.history(gauges_.row(state_.time, state_.step, measures_));
+    while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
+    if (due(state_.profiles, scene_.output.profile_interval) || state_.time >= scene_.time.end) {
+      writer_.profile(state_.time, measures_.coordinate, measures_.value);
+      while (due(state_.profiles, scene_.output.profile_interval)) state_.profiles += 1.0;
+    }
+    if (due(state_.snapshots, scene_.output.snapshot_interval)) {
+      snapshots_.write(state_.time, *solver_);
+      while (due(state_.snapshots, scene_.output.snapshot_interval)) state_.snapshots += 1.0;
+    }
+    follow_rest();
+    if (due(state_.checkpoints, scene_.output.checkpoint_interval)) {
+      while (due(state_.checkpoints, scene_.output.checkpoint_interval)) state_.checkpoints += 1.0;
+      if (state_.time > 0.0) checkpoint();
+    }
+    progress_.update(state_.time, fmt::format("t = {:.2f} s, {}, growth to come {:.2g} %", state_.time, gauges_.headline(measures_),
+                                              100.0 * growth_to_come()));
+  }
+
+  /// Bound on the relative growth of the spread still to come.
+  double growth_to_come() const {
+    if (settings_.flow.yield_stress <= 0.0) return std::numeric_limits<double>::infinity();
+    return growth_per_overstress * settings_.flow.plastic_viscosity * measures_.shear_rate_p99 / settings_.flow.yield_stress;
+  }
+
+  /// The bound counts once it has held for twice the time in which the driving force would move the material over its own
+  /// height: at the start nothing yields yet, and that is not rest.
+  double time_to_trust_rest() const {
+    const auto a = acceleration_at(scene_, state_.time);
+    double driving = 0.0;
+    for (const double c : a) driving = std::max(driving, std::abs(c));
+    const double length = scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : scene_.duct().height;
+    return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
+  }
+
+  void follow_rest() {
+    if (scene_.material.model != scenes::Model::elasto_viscoplastic || !(growth_to_come() < scene_.time.rest_bound)) {
+      state_.calm_since = -1.0;
+    } else if (state_.calm_since < 0.0) {
+      state_.calm_since = state_.time;
+    }
+  }
+
+  bool has_come_to_rest() const { return state_.calm_since >= 0.0 && state_.time - state_.calm_since >= time_to_trust_rest(); }
+  bool at_rest() const { return scene_.time.stop_at_rest && has_come_to_rest(); }
+
+  void checkpoint() {
+    state_.cpu = runs::cpu_seconds() - cpu_begin_;
+    state_.wall = seconds_now() - wall_begin_;
+    write_checkpoint(options_.directory, {state_, solver_->state(), scenes::resolved_toml(scene_)});
+  }
+
+  void describe() {
+    auto& info = writer_.info();
+    info["scheme"] = scenes::to_string(scene_.mpm.scheme);
+    info["precision"] = scenes::to_string(scene_.mpm.precision);
+    info["instruction_set"] = solver_->instruction_set();
+    info["threads"] = solver_->threads();
+    info["cell_m"] = settings_.cell;
+    info["particles"] = solver_->particle_count();
+    info["occupied_cells_at_start"] = solver_->occupied_cells();
+    info["resolved_toml"] = scenes::resolved_toml(scene_);
+    writer_.write();
+  }
+
+  void summarise() {
+    auto& info = writer_.info();
+    const double cpu = runs::cpu_seconds() - cpu_begin_, wall = seconds_now() - wall_begin_;
+    const double particle_steps = state_.steps * static_cast<double>(solver_->particle_count());
+    info["simulated_s"] = state_.time;
+    info["steps"] = static_cast<std::int64_t>(state_.steps);
+    info["wall_s"] = wall;
+    info["cpu_s"] = cpu;
+    info["particle_steps_per_cpu_s"] = cpu > 0.0 ? particle_steps / cpu : 0.0;
+    info["bytes_per_particle"] = static_cast<double>(solver_->bytes()) / static_cast<double>(solver_->particle_count());
+    const StageTimes& t = solver_->stage_times();
+    info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid}, {"nodes", t.nodes},
+                            {"grid_to_particles", t.grid_to_particles}, {"sorting", t.sorting}};
+    info["growth_to_come"] = std::isfinite(growth_to_come()) ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
+    info["rest_time_s"] = has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
+  }
+
+  /// "sound", or what makes the run's numbers doubtful.
+  std::string verdict() const {
+    const scenes::StepLimits limits = scenes::step_limits(scene_);
+    if (state_.step > limits.viscous)
+      return fmt::format("noisy: the explicit fluid's step of {:.2g} s is past its viscous limit of {:.2g} s", state_.step, limits.viscous);
+    if (scene_.mpm.time_step && *scene_.mpm.time_step > limits.largest())
+      return fmt::format("noisy: the step of {:.2g} s is past the stable limit of {:.2g} s", *scene_.mpm.time_step, limits.largest());
+    if (scene_.kind == scenes::Kind::slump) {
+      const double cells = runs::centre_depth(measures_.coordinate, measures_.value) / settings_.cell;
+      if (cells < cells_over_depth_wanted) return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
+    }
+    return "sound";
+  }
+
+  RunResult stop(runs::Status status, const std::string& reason) {
+    if (status == runs::Status::interrupted) checkpoint();
+    if (status == runs::Status::at_rest) {
+      writer_.profile(state_.time, measures_.coordinate, measures_.value);
+      snapshots_.write(state_.time, *solver_);
+    }
+    summarise();
+    writer_.finish(status, reason, verdict());
+    print_summary(status);
+    return {status, reason, state_.time, gauges_.headline_value(measures_)};
+  }
+
+  void return_after_failure(const std::string& reason) {
+    summarise();
+    writer_.finish(runs::Status::failed, fmt::format("at {:.6g} s: {}", state_.time, reason), "noisy: the numerics failed");
+    progress_.finish("failed");
+  }
+
+  void print_summary(runs::Status status) {
+    const auto& info = writer_.info();
+    const double wall = info["wall_s"], cpu = info["cpu_s"], steps = state_.steps;
+    progress_.finish(fmt::format("{} at {:.2f} s, {}; {:.0f} steps/s, {:.3g} particle-steps per CPU s, {:.3g} simulated s per hour",
+                                 runs::to_string(status), state_.time, gauges_.headline(measures_), steps / wall,
+                                 info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
+    if (options_.quiet) return;
+    const StageTimes& t = solver_->stage_times();
+    const double listed = t.particles_to_grid + t.nodes + t.grid_to_particles + t.sorting;
+    fmt::print(stderr, "  wall time per stage ({} threads, {}, {:.2f} CPU s):\n", solver_->threads(), solver_->instruction_set(), cpu);
+    for (const auto& [name, seconds] : {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
+                                        std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
+                                        std::pair{"gauges and output", std::max(0.0, wall - listed)}})
+      fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
+  }
+
+  scenes::Scene scene_;
+  RunOptions options_;
+  SolverSettings settings_;
+  Gauges gauges_;
+  double factor_;
+  runs::RunWriter writer_;
+  SnapshotWriter snapshots_;
+  runs::Progress progress_;
+  std::unique_ptr<Solver> solver_;
+  RunState state_;
+  Measures measures_;
+  double cpu_begin_ = 0.0, wall_begin_ = 0.0;
+};
+
+}  // namespace
+
+RunResult run(const scenes::Scene& scene, const RunOptions& options) { return MpmRun(scene, options, std::nullopt).run(); }
+
+RunResult resume(const RunOptions& options) {
+  if (const auto checkpoint = read_checkpoint(options.directory)) {
+    const scenes::Scene scene = scenes::parse_scene(checkpoint->scene, options.directory / "checkpoint.h5");
+    return MpmRun(scene, options, checkpoint).run();
+  }
+  std::ifstream file(options.directory / "run.json");
+  const auto info = nlohmann::json::parse(file, nullptr, false);
+  if (info.is_discarded() || info.value("solver", "") != "mpm" || !info.contains("resolved_toml"))
+    throw runs::RunError(fmt::format("{}: is not an MPM run that can be gone on with: neither a checkpoint.h5 nor a run.json of flowrest mpm",
+                                     options.directory.string()));
+  return run(scenes::parse_scene(info["resolved_toml"], options.directory / "run.json"), options);
+}
+
+}  // namespace flowrest::mpm
