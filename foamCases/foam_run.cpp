@@ -11,10 +11,10 @@
 
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
-#include "foamCases/process.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
 #include "foamCases/wedge_grid.h"
+#include "runs/process.h"
 #include "runs/progress.h"
 
 namespace flowrest::foam {
@@ -37,7 +37,7 @@ struct Programs {
 };
 
 fs::path needed_program(const std::string& name) {
-  if (const auto found = find_program(name)) return *found;
+  if (const auto found = runs::find_program(name)) return *found;
   throw runs::MissingProgram(fmt::format(
       "{} is not on the PATH: `flowrest foam` needs OpenFOAM (Debian: apt-get install openfoam)", name));
 }
@@ -67,7 +67,7 @@ class SlumpRun {
                   options.quiet) {}
 
   RunOutcome run() {
-    const InterruptGuard guard;
+    const runs::InterruptGuard guard;
     try {
       fill_case(scene_, case_);
       writer_.info()["cells"] = wedge_grid(scene_).cells();
@@ -98,9 +98,9 @@ class SlumpRun {
   bool run_to_end(const fs::path& program) {
     const std::string name = program.filename().string();
     const fs::path log_path = case_ / ("log." + name);
-    Process process(program, {}, case_, log_path, openfoam_environment());
+    runs::Process process(program, {}, case_, log_path, openfoam_environment());
     while (!process.wait(poll_interval))
-      if (InterruptGuard::count() > 0) {
+      if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
         return false;
       }
@@ -117,14 +117,14 @@ class SlumpRun {
     sampler_.emplace(scene_, case_, writer_);
     sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
     const fs::path log_path = case_ / "log.interFoam";
-    Process solver(programs_.inter_foam, {}, case_, log_path, openfoam_environment());
+    runs::Process solver(programs_.inter_foam, {}, case_, log_path, openfoam_environment());
     FileTail tail(log_path);
     bool running = true;
     while (running) {
       running = !solver.wait(poll_interval);
       follow(tail.read(), running);
       if (!running) break;
-      if (InterruptGuard::count() > 0) {
+      if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
         stop(solver);
       } else if (status_ == Status::failed) {
@@ -183,11 +183,11 @@ class SlumpRun {
   }
 
   /// Asks the solver to end its step and write; insists where it does not, or where the user asks again.
-  void stop(Process& solver) {
+  void stop(runs::Process& solver) {
     const auto deadline = Clock::now() + std::chrono::duration<double>(options_.grace);
-    const int asked = InterruptGuard::count();
+    const int asked = runs::InterruptGuard::count();
     solver.signal(SIGUSR2);
-    while (Clock::now() < deadline && InterruptGuard::count() <= asked)
+    while (Clock::now() < deadline && runs::InterruptGuard::count() <= asked)
       if (solver.wait(poll_interval)) return;
     solver.signal(SIGTERM);
     if (solver.wait(1.0)) return;
@@ -196,7 +196,7 @@ class SlumpRun {
     }
   }
 
-  void conclude(const ProcessEnd& end) {
+  void conclude(const runs::ProcessEnd& end) {
     cpu_by_program_["interFoam"] = end.cpu_s;
     if (status_ != Status::running) return;
     if (!end.good()) {

@@ -1,0 +1,141 @@
+#include "foamCases/case_filler.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "foamCases/test_scene.h"
+#include "foamCases/wedge_grid.h"
+#include "runs/run_directory.h"
+
+namespace flowrest::foam {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::roussel_slump;
+using testing::TemporaryFolder;
+using testing::text_of;
+
+/// "key value;" lines of a dictionary, comments left out.
+std::map<std::string, std::string> entries(const std::string& text) {
+  std::map<std::string, std::string> result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const auto end = line.find(';');
+    std::istringstream words(line.substr(0, end));
+    std::string key;
+    words >> key >> std::ws;
+    if (end == std::string::npos || key.starts_with("//")) continue;
+    std::getline(words, result[key]);
+  }
+  return result;
+}
+
+std::string refusal(const std::string& model, const std::vector<std::string>& set) {
+  try {
+    check_supported(roussel_slump(model, set));
+  } catch (const scenes::SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CaseFiller, TheCommittedCaseIsTheRousselSlump) {
+  EXPECT_EQ(text_of(cases_folder() / "slump" / "sceneParameters"),
+            scene_parameters(roussel_slump("papanastasiou")))
+      << "foamCases/slump/sceneParameters is what `flowrest foam roussel-slump --model papanastasiou` writes";
+}
+
+TEST(CaseFiller, TakesEveryNumberFromTheScene) {
+  const auto scene = roussel_slump(
+      "bi-viscous", {"foam.cell=0.02", "time.end=7", "material.density=2000", "material.yield_stress=80",
+                     "material.plastic_viscosity=20", "material.critical_shear_rate=0.05", "walls.base=slip",
+                     "forces.gravity=1.6", "foam.max_courant=0.1", "geometry.cone_radius_bottom=0.12",
+                     "output.history_interval=0.5", "output.snapshot_interval=2"});
+  const auto values = entries(scene_parameters(scene));
+  const auto number = [&](const std::string& key) { return std::stod(values.at(key)); };
+  EXPECT_EQ(values.at("baseWall"), "slip");
+  EXPECT_EQ(values.at("gravity"), "(0 0 -1.6)");
+  EXPECT_EQ(values.at("transportModel"), "HerschelBulkley");
+  EXPECT_DOUBLE_EQ(number("nu0"), (20.0 + 80.0 / 0.05) / 2000.0);
+  EXPECT_DOUBLE_EQ(number("tau0"), 80.0 / 2000.0);
+  EXPECT_DOUBLE_EQ(number("k"), 20.0 / 2000.0);
+  EXPECT_EQ(number("concreteDensity"), 2000.0);
+  EXPECT_EQ(number("endTime"), 7.0);
+  EXPECT_EQ(number("maxCourant"), 0.1);
+  EXPECT_DOUBLE_EQ(number("maxDeltaT"), 0.02 * 0.02 * 2000.0 / 20.0);
+  EXPECT_EQ(number("coneRadiusBottom"), 0.12);
+  EXPECT_EQ(number("sampleInterval"), 0.25);  // of the profiles, which come oftener here
+  EXPECT_EQ(number("snapshotInterval"), 2.0);
+  EXPECT_EQ(number("coneCells"), 15.0);
+  EXPECT_DOUBLE_EQ(number("halfWidth"), 0.45 * std::tan(std::acos(-1.0) / 72.0));
+  EXPECT_DOUBLE_EQ(number("minusHalfWidth"), -number("halfWidth"));
+}
+
+TEST(CaseFiller, ANewtonianFluidHasOneViscosity) {
+  const auto values = entries(scene_parameters(roussel_slump("newtonian")));
+  EXPECT_EQ(values.at("transportModel"), "Newtonian");
+  EXPECT_DOUBLE_EQ(std::stod(values.at("nu")), 50.0 / 2300.0);
+}
+
+TEST(CaseFiller, TheStepNeverPassesASampleAndObeysTheScene) {
+  EXPECT_DOUBLE_EQ(largest_time_step(roussel_slump("papanastasiou")), 0.0046);
+  EXPECT_EQ(largest_time_step(roussel_slump("papanastasiou", {"foam.max_time_step=0.002"})), 0.002);
+  EXPECT_EQ(largest_time_step(roussel_slump("papanastasiou", {"material.plastic_viscosity=0.1"})), 0.05);
+}
+
+TEST(CaseFiller, RefusesWhatTheBuiltInFluidsCannotDo) {
+  EXPECT_THAT(refusal("elasto-viscoplastic", {}),
+              HasSubstr("never come to rest, so it needs a rheology plug-in that there is not yet; allowed: "
+                        "papanastasiou, bi-viscous, newtonian"));
+  EXPECT_THAT(refusal("papanastasiou",
+                      {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                       "thixotropy.initial_flocculation=1.8"}),
+              HasSubstr("allowed: a scene without [thixotropy]"));
+  EXPECT_THAT(refusal("papanastasiou", {"geometry.dimension=quarter"}), HasSubstr("allowed: axisymmetric"));
+  EXPECT_THAT(refusal("papanastasiou", {"geometry.domain_height=0.301"}), HasSubstr("at least 0.31 m"));
+  EXPECT_THAT(refusal("papanastasiou", {"foam.cell=0.0001"}), HasSubstr("at most 5e+06 are allowed"));
+  EXPECT_EQ(refusal("bi-viscous", {}), "accepted");
+  try {
+    check_supported(scenes::load_scene("poiseuille-step-down", {{}, scenes::Model::papanastasiou}));
+    FAIL() << "a duct was accepted";
+  } catch (const scenes::SceneError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("kind duct: there is no OpenFOAM case of it yet; allowed: slump"));
+  }
+}
+
+TEST(CaseFiller, CopiesTheCaseAndNothingARunLeftInIt) {
+  const TemporaryFolder cases, target;
+  fs::copy(cases_folder() / "slump", cases.path() / "slump", fs::copy_options::recursive);
+  fs::create_directories(cases.path() / "slump" / "12.5");
+  fs::create_directories(cases.path() / "slump" / "constant" / "polyMesh");
+  setenv("FLOWREST_FOAM_CASES", cases.path().c_str(), 1);
+  const auto scene = roussel_slump("bi-viscous");
+  fill_case(scene, target.path() / "case");
+  unsetenv("FLOWREST_FOAM_CASES");
+  const fs::path filled = target.path() / "case";
+  EXPECT_EQ(text_of(filled / "sceneParameters"), scene_parameters(scene));
+  for (const char* part : {"0/U", "0/p_rgh", "0/alpha.concrete", "system/controlDict", "Allrun", "case.foam"})
+    EXPECT_TRUE(fs::exists(filled / part)) << part;
+  EXPECT_FALSE(fs::exists(filled / "12.5"));
+  EXPECT_FALSE(fs::exists(filled / "constant" / "polyMesh"));
+}
+
+TEST(CaseFiller, SaysWhereItLookedForACase) {
+  const TemporaryFolder empty;
+  setenv("FLOWREST_FOAM_CASES", empty.path().c_str(), 1);
+  try {
+    fill_case(roussel_slump("papanastasiou"), empty.path() / "case");
+    FAIL() << "a case was found where there is none";
+  } catch (const runs::RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr((empty.path() / "slump").string() + ": no OpenFOAM case is there"));
+  }
+  unsetenv("FLOWREST_FOAM_CASES");
+}
+
+}  // namespace
+}  // namespace flowrest::foam

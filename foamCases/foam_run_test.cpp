@@ -1,0 +1,179 @@
+// Runs against programs that only pretend to be OpenFOAM's: what becomes of a run when they fail, hang or are
+// missing.
+#include "foamCases/foam_run.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "foamCases/test_scene.h"
+
+namespace flowrest::foam {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::roussel_slump;
+
+class FakeOpenFoam : public ::testing::Test {
+ protected:
+  FakeOpenFoam() : scene_(roussel_slump("papanastasiou", {"foam.cell=0.05", "time.end=1"})) {
+    setenv("PATH", (folder_.path().string() + ":/usr/bin:/bin").c_str(), 1);
+    for (const char* name : {"blockMesh", "setAlphaField"}) program(name, "exit 0");
+    // 9 rings, 6 + 1 rows: the two inner rings filled to the cone's top.
+    program("setFields",
+            "awk 'BEGIN { print \"FoamFile { format ascii; }\\ninternalField nonuniform "
+            "List<scalar>\\n63\\n(\";\n"
+            "  for (i = 0; i < 63; ++i) print (i % 9 < 2 && i < 54) ? 1 : 0; print \")\\n;\" }' > "
+            "0/alpha.concrete");
+    options_.directory = folder_.path() / "run";
+    options_.quiet = true;
+  }
+
+  void program(const std::string& name, const std::string& body) {
+    const fs::path path = folder_.path() / name;
+    std::ofstream(path) << "#!/bin/sh\n" << body << "\n";
+    fs::permissions(path, fs::perms::owner_all);
+  }
+
+  static std::string step(double time, double time_step) {
+    return fmt::format(
+        "echo 'Courant Number mean: 0 max: 0.1'\necho 'deltaT = {}'\necho 'Time = {}'\n"
+        "echo 'DILUPBiCGStab:  Solving for Ux, Initial residual = 0.01, Final residual = 0, No Iterations "
+        "1'\n"
+        "echo 'ExecutionTime = 0.1 s  ClockTime = 0 s'\n",
+        time_step, time);
+  }
+
+  /// The reason a run fails for, and what it leaves.
+  std::string failure() {
+    try {
+      run_scene(scene_, options_);
+    } catch (const runs::NumericsError& error) {
+      const auto run = runs::read_run(options_.directory);
+      EXPECT_EQ(run.info["status"], "failed");
+      EXPECT_THAT(error.what(), HasSubstr(run.info["reason"].get<std::string>()));
+      return error.what();
+    }
+    return "no failure";
+  }
+
+  testing::TemporaryFolder folder_;
+  scenes::Scene scene_;
+  RunOptions options_;
+};
+
+TEST_F(FakeOpenFoam, ARunThatEndsIsDone) {
+  program("interFoam", "echo 'Build  : OPENFOAM=fake'\n" + step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  const auto outcome = run_scene(scene_, options_);
+  EXPECT_EQ(outcome.status, runs::Status::end_time);
+  const auto run = runs::read_run(options_.directory);
+  EXPECT_EQ(run.info["status"], "end-time");
+  EXPECT_EQ(run.info["openfoam"], "OPENFOAM=fake");
+  EXPECT_EQ(run.info["steps"], 2);
+  EXPECT_NEAR(run.history.at("volume_m3").front(), std::acos(-1.0) * 0.1 * 0.1 * 0.3, 1e-12);
+}
+
+TEST_F(FakeOpenFoam, MissingProgramsAreNamedAndNothingIsWritten) {
+  const testing::TemporaryFolder empty;
+  setenv("PATH", empty.path().c_str(), 1);
+  try {
+    run_scene(scene_, options_);
+    FAIL() << "it ran without OpenFOAM";
+  } catch (const runs::MissingProgram& error) {
+    EXPECT_THAT(error.what(), HasSubstr("blockMesh is not on the PATH"));
+    EXPECT_THAT(error.what(), HasSubstr("apt-get install openfoam"));
+  }
+  EXPECT_FALSE(fs::exists(options_.directory));
+}
+
+TEST_F(FakeOpenFoam, AFatalErrorIsTheReason) {
+  program("interFoam", step(0.5, 0.5) + "echo '--> FOAM FATAL ERROR: '\necho 'it cannot be'\nexit 1");
+  EXPECT_THAT(failure(), HasSubstr("interFoam at 0.5 s: FOAM FATAL ERROR: it cannot be"));
+}
+
+TEST_F(FakeOpenFoam, AMeshThatFailsIsTheReason) {
+  program("blockMesh", "echo '--> FOAM FATAL IO ERROR: '\necho 'no vertices'\nexit 1");
+  EXPECT_THAT(failure(), HasSubstr("blockMesh ended with exit code 1: FOAM FATAL IO ERROR: no vertices"));
+}
+
+TEST_F(FakeOpenFoam, ACrashIsTheReason) {
+  program("interFoam", step(0.5, 0.5) + "kill -SEGV $$");
+  EXPECT_THAT(failure(), HasSubstr("interFoam ended with signal 11"));
+}
+
+TEST_F(FakeOpenFoam, ANumberThatIsNoneEndsTheRunAtOnce) {
+  program("interFoam",
+          step(0.5, 0.5) +
+              "echo 'Time = 1'\necho 'DILUPBiCGStab:  Solving for Ux, Initial residual = nan,'\nsleep 60");
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(failure(), HasSubstr("a number that is none"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+}
+
+TEST_F(FakeOpenFoam, ACollapsingStepEndsTheRunAtOnce) {
+  std::string steps;
+  for (int i = 0; i < 30; ++i) steps += step(0.5 + 1e-9 * i, 1e-9);
+  program("interFoam", steps + "sleep 60");
+  EXPECT_THAT(failure(), HasSubstr("the time step collapsed to 1e-09 s at 0.5 s"));
+}
+
+TEST_F(FakeOpenFoam, AnEndBeforeTheEndIsAFailure) {
+  program("interFoam", step(0.5, 0.5));
+  EXPECT_THAT(failure(), HasSubstr("interFoam stopped before its end time"));
+}
+
+TEST_F(FakeOpenFoam, ConcreteAtTheRimEndsTheRun) {
+  program("interFoam",
+          step(0.5, 0.5) +
+              "mkdir 0.5; cp 0/U 0.5/; sed 's/uniform List.*/&/' 0/alpha.concrete |"
+              " awk 'NR > 4 && NR < 68 { n++; print (n % 9 == 0 && n < 10) ? 1 : $0; next } { print }'"
+              " > 0.5/alpha.concrete\n" +
+              step(1.0, 0.5) + "sleep 60");
+  EXPECT_THAT(
+      failure(),
+      HasSubstr("the concrete reached the rim of the mesh at 0.5 s: geometry.domain_radius = 0.45 m"));
+}
+
+/// Sends this process an interrupt once the run's solver has begun.
+std::thread interrupt_when_begun(const fs::path& log) {
+  return std::thread([log] {
+    for (int i = 0; i < 500; ++i) {
+      std::error_code ignored;
+      if (fs::exists(log, ignored) && fs::file_size(log, ignored) > 0) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    kill(getpid(), SIGINT);
+  });
+}
+
+TEST_F(FakeOpenFoam, AnInterruptLetsTheSolverEndItsStep) {
+  program("interFoam", "trap 'echo End; exit 0' USR2\n" + step(0.5, 0.5) + "while :; do sleep 0.05; done");
+  auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
+  const auto outcome = run_scene(scene_, options_);
+  interrupt.join();
+  EXPECT_EQ(outcome.status, runs::Status::interrupted);
+  const auto run = runs::read_run(options_.directory);
+  EXPECT_EQ(run.info["status"], "interrupted");
+  EXPECT_EQ(run.info["steps"], 1);
+  EXPECT_GE(run.history.rows(), 1U);
+}
+
+TEST_F(FakeOpenFoam, ASolverThatDoesNotStopIsMadeTo) {
+  options_.grace = 0.2;
+  program("interFoam", "trap '' USR2 TERM\n" + step(0.5, 0.5) + "while :; do sleep 0.05; done");
+  auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
+  const auto outcome = run_scene(scene_, options_);
+  interrupt.join();
+  EXPECT_EQ(outcome.status, runs::Status::interrupted);
+}
+
+}  // namespace
+}  // namespace flowrest::foam
