@@ -157,7 +157,8 @@ std::optional<double> drift(const Series& series) {
 
 Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
   const Measures& m = view.measures;
-  if (!m.residual) return Cause::unknown;
+  // A record that was cut off may have been cut off while it still flowed.
+  if (!m.residual || !view.trouble.empty()) return Cause::unknown;
   const double speed = std::abs(*m.residual);
   if (!view.fluid) return view.held || speed <= rest_speed ? Cause::at_rest : Cause::approaching_rest;
   const bool explained = m.predicted_creep && speed <= options.creep_factor * *m.predicted_creep;
@@ -192,6 +193,8 @@ void measure(RunView& view, const Comparison& comparison) {
     return;
   }
   m.rest_declared = number(info, "/rest_time_s");
+  if (const auto growth = number(info, "/growth_to_come"); slump && growth && m.gauge_end)
+    m.growth_to_come = *growth * *m.gauge_end;
   m.cpu = number(info, "/cpu_s");
   m.wall = number(info, "/wall_s");
   if (m.cpu && m.end && *m.end > 0.0) m.cpu_per_simulated_second = *m.cpu / *m.end;

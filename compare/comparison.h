@@ -41,8 +41,9 @@ struct Measures {
   std::optional<double> centre_depth;   ///< m, of the last profile
   std::optional<double> rest_declared;  ///< s, by the run itself
   std::optional<double> rest_by_shear_rate, rest_by_spread_rate;  ///< s
-  std::optional<double> stop_after_step;                          ///< s after the last change of force, ducts
-  std::optional<double> stopping_bound;                           ///< s, its exact upper bound, ducts
+  std::optional<double> growth_to_come;  ///< m, a bound the run itself puts on what its spread may still gain
+  std::optional<double> stop_after_step;  ///< s after the last change of force, ducts
+  std::optional<double> stopping_bound;   ///< s, its exact upper bound, ducts
   std::optional<double> residual;  ///< m/s: growth of the spread, or plug velocity, over the last seconds
   std::optional<double> residual_scatter;  ///< of the gauge about its trend there
   std::optional<double> predicted_creep;   ///< m/s, what the regularisation alone would leave

@@ -31,10 +31,13 @@ std::string noise_clause(const RunView& view) {
 std::string arrest_sentence(const RunView& view) {
   const Measures& m = view.measures;
   const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  const std::string more = m.growth_to_come ? fmt::format(", with at most {:.0f} mm still to come",
+                                                          std::ceil(1e3 * *m.growth_to_come))
+                                            : "";
   if (view.held)
-    return fmt::format("{} comes to rest{} with a spread of {}{}.", view.label,
+    return fmt::format("{} comes to rest{} with a spread of {}{}{}.", view.label,
                        m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "",
-                       words::spread(*m.gauge_end), noise);
+                       words::spread(*m.gauge_end), more, noise);
   const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
   if (m.cause == Cause::at_rest && rest)
     return fmt::format("{} has all but stopped by {} and ends with a spread of {}{}.", view.label,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "compare/comparison.h"
 #include "compare/report/report.h"
@@ -25,6 +26,7 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
     json["spread_end_at_6mm_mm"] = scaled(m.spread_6mm, 1e3);
     json["centre_end_mm"] = scaled(m.centre_depth, 1e3);
     json["rest_declared_s"] = scaled(m.rest_declared);
+    json["growth_to_come_mm"] = scaled(m.growth_to_come, 1e3);
     json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
     json["rest_by_spread_rate_s"] = scaled(m.rest_by_spread_rate);
     json["overshoot_reference_run"] = m.overshoot_reference_run;
@@ -56,12 +58,14 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
   return json;
 }
 
-/// The keys of run.json that a reader of the comparison may want, without the bulk.
+/// What run.json says beyond what the comparison shows elsewhere, without the bulk.
 Json provenance_json(const RunView& view) {
-  Json json;
-  for (const char* key : {"provenance", "versions", "openfoam", "threads", "steps", "particles", "cells",
-                          "particle_steps_per_cpu_s", "resumed_at_s", "source"})
-    if (view.run.info.contains(key)) json[key] = view.run.info[key];
+  static const std::set<std::string> elsewhere = {
+      "format", "format_version", "title",   "kind",  "solver",   "model",        "label",
+      "status", "reason",         "verdict", "scene", "settings", "resolved_toml"};
+  Json json = Json::object();
+  for (const auto& [key, value] : view.run.info.items())
+    if (!elsewhere.contains(key)) json[key] = value;
   return json;
 }
 

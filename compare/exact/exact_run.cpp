@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "compare/exact/solutions.h"
 #include "runs/depth.h"
@@ -65,16 +66,26 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
   if (scene.base != scenes::Wall::no_slip) refuse(scene, "the arrested profiles hold on a base without slip");
   if (!(material.yield_stress > 0.0)) refuse(scene, "without a yield stress the material spreads for ever");
   if (!(scene.forces.gravity > 0.0)) refuse(scene, "without gravity nothing slumps");
+  const bool plane_flow = scene.geometry.dimension == scenes::Dimension::plane;
+  const double half_area = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
+  const double foot = std::numbers::pi * cone.cone_radius_bottom * cone.cone_radius_bottom;
+  const double base_stress = material.density * scene.forces.gravity *
+                             (plane_flow ? half_area / cone.cone_radius_bottom : cone.volume() / foot);
+  // Uniaxial compression yields at sqrt(3) tau0, plane compression at 2 tau0 (von Mises).
+  if (base_stress < (plane_flow ? 2.0 : std::numbers::sqrt3) * material.yield_stress)
+    refuse(scene,
+           fmt::format(
+               "the yield stress is so high that the cone stands: its weight over its foot, {:.0f} Pa, is "
+               "less than makes it yield",
+               base_stress));
   const auto must_spread = [&](double radius) {
     if (radius < cone.cone_radius_bottom)
       refuse(scene,
              fmt::format(
-                 "the yield stress is so high that the slender profile (radius {:.0f} mm) would be narrower "
-                 "than the cone (foot {:.0f} mm)",
+                 "the slender profile (radius {:.0f} mm) would be narrower than the cone (foot {:.0f} mm)",
                  1000.0 * radius, 1000.0 * cone.cone_radius_bottom));
   };
-  if (scene.geometry.dimension == scenes::Dimension::plane) {
-    const double half_area = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
+  if (plane_flow) {
     const auto plane = plane_slump(material, scene.forces.gravity, half_area);
     must_spread(plane.half_width);
     return {write_slump(scene, directory / "leading-order", plane, plane.half_width, 2.0 * half_area,

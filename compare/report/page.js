@@ -283,6 +283,7 @@
     {name: 'Centre', unit: 'mm', format: fixed(1), value: measure('centre_end_mm')},
     {name: 'Recorded until', unit: 's', format: fixed(0), value: run => run.exact ? null : run.measures.end_s},
     {name: 'Rest, declared', unit: 's', format: fixed(1), value: measure('rest_declared_s')},
+    {name: 'Still to come, at most', unit: 'mm', format: fixed(1), value: measure('growth_to_come_mm')},
     {name: 'Rest by shear rate', unit: 's', format: fixed(1), value: measure('rest_by_shear_rate_s')},
     {name: 'Rest by spread rate', unit: 's', format: fixed(1), value: measure('rest_by_spread_rate_s')},
     ...overshoots.map(key => ({name: 'Past the arrested spread at ' + key.match(/at_(.+)s_mm/)[1] + ' s', unit: 'mm', format: signed(0), value: measure(key)})),
@@ -421,7 +422,7 @@
       {name: 'Steps', format: fixed(0), value: run => run.made_by && run.made_by.steps},
       {name: 'Particles', format: fixed(0), value: run => run.made_by && run.made_by.particles},
       {name: 'Cells', format: fixed(0), value: run => run.made_by && run.made_by.cells},
-      {name: 'Particle-steps per CPU second', format: to(3), value: run => run.made_by && run.made_by.particle_steps_per_cpu_s},
+      {name: 'Particle-steps or cell-steps per CPU second', format: to(3), value: run => run.made_by.particle_steps_per_cpu_s ?? run.made_by.cell_steps_per_cpu_s},
     ], [...priced]);
   } else hide('section-cost');
 

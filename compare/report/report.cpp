@@ -94,6 +94,7 @@ Json page_data(const Comparison& comparison, const Json& comparison_json) {
                            : Json{{"name", "height above the mid-plane"}, {"unit", "mm"}}},
       {"value",
        slump ? Json{{"name", "depth"}, {"unit", "mm"}} : Json{{"name", "velocity"}, {"unit", "m/s"}}}};
+  for (const char* list : {"time", "grid", "frames", "runs"}) data[list] = Json::array();
   std::vector<double> time;
   for (int i = 0; i <= history_samples; ++i)
     time.push_back(comparison.end * std::pow(static_cast<double>(i) / history_samples, 1.7));

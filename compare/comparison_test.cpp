@@ -1,0 +1,297 @@
+#include "compare/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "compare/exact/exact_run.h"
+#include "compare/synthetic_runs.h"
+#include "compare/words.h"
+
+using namespace flowrest;
+using namespace flowrest::compare;
+using scenes::Model;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+namespace {
+
+class ComparisonTest : public testing::Test {
+ protected:
+  ComparisonTest() {
+    std::string pattern = (fs::temp_directory_path() / "flowrest-compare-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+  }
+  ~ComparisonTest() override { fs::remove_all(folder); }
+
+  Comparison compared() const { return compare_runs(find_runs({folder})); }
+  const RunView& run(const Comparison& comparison, const std::string& label) const {
+    for (const RunView& view : comparison.runs)
+      if (view.label == label) return view;
+    throw std::runtime_error("no run " + label);
+  }
+  std::string text(const Comparison& comparison) const {
+    std::string all;
+    for (const Finding& finding : comparison.findings) all += finding.text + '\n';
+    return all;
+  }
+  void write_arrested() const {
+    synthetic::Slump slump;
+    slump.end = 20.0;
+    slump.status = runs::Status::at_rest;
+    synthetic::write(slump, folder / "evp");
+  }
+  synthetic::Slump creeping(double creep) const {
+    synthetic::Slump slump;
+    slump.model = Model::papanastasiou;
+    slump.creep = creep;
+    return slump;
+  }
+
+  fs::path folder;
+};
+
+template <class Function>
+std::string message_of(Function function) {
+  try {
+    function();
+  } catch (const runs::RunError& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+}  // namespace
+
+TEST_F(ComparisonTest, MeasuresWhatTheFormulaSays) {
+  write_arrested();
+  const synthetic::Slump fluid = creeping(2e-4);
+  synthetic::write(fluid, folder / "papanastasiou");
+  const Comparison comparison = compared();
+  const Measures& evp = run(comparison, "MPM elasto-viscoplastic").measures;
+  const Measures& creep = run(comparison, "MPM papanastasiou").measures;
+  EXPECT_EQ(evp.rest_declared, 20.0);
+  EXPECT_EQ(evp.cause, Cause::at_rest);
+  EXPECT_EQ(evp.predicted_creep, 0.0);
+  // 20/(1 + t/0.4)^3 falls through 0.01 1/s at 4.64 s.
+  EXPECT_NEAR(*evp.rest_by_shear_rate, 4.64, 0.051);
+  // 4 (0.288 - 0.1)/0.4/(1 + t/0.4)^3 falls through 1e-4 m/s at 10.26 s.
+  EXPECT_NEAR(*evp.rest_by_spread_rate, 10.26, 0.3);
+  EXPECT_FALSE(creep.rest_by_spread_rate) << "a creep above the threshold is no rest";
+  EXPECT_NEAR(*creep.residual, 2e-4, 1e-5);
+  EXPECT_NEAR(*creep.predicted_creep, 6.9e-4, 1e-5);
+  EXPECT_EQ(creep.cause, Cause::creep);
+  EXPECT_NEAR(*creep.volume_drift, -1e-5, 1e-9);
+  EXPECT_EQ(creep.cpu, 12.0);
+  EXPECT_NEAR(*creep.cpu_per_simulated_second, 0.2, 1e-12);
+  for (const double time : {20.0, 25.0, 60.0})
+    EXPECT_NEAR(creep.overshoot.at(time),
+                2.0 * (fluid.radius_at(time) - fluid.radius_at(20.0) + 0.5 * 2e-4 * 20.0), 2e-5)
+        << "at " << time;
+  EXPECT_NEAR(*creep.stop_highest - *creep.stop_lowest, 2.0 * (fluid.radius_at(60.0) - fluid.radius_at(10.0)),
+              1e-6);
+  EXPECT_NEAR(*evp.centre_depth, 0.0396, 1e-3);
+  EXPECT_GT(*evp.spread_1_5mm, *evp.gauge_end);
+  EXPECT_LT(*evp.spread_6mm, *evp.gauge_end);
+}
+
+TEST_F(ComparisonTest, SplitsLawFromSolver) {
+  write_arrested();
+  synthetic::write(creeping(1e-4), folder / "mpm-fluid");
+  synthetic::Slump foam = creeping(1e-4);
+  foam.solver = "foam";
+  foam.radius = 0.294;
+  synthetic::write(foam, folder / "foam-fluid");
+  const Comparison comparison = compared();
+  std::map<std::string, std::vector<double>> by_kind;
+  for (const Pair& pair : comparison.pairs) by_kind[pair.kind].push_back(*pair.at.back().gauge_difference);
+  ASSERT_THAT(by_kind["law"], testing::SizeIs(1));
+  ASSERT_THAT(by_kind["solver"], testing::SizeIs(1));
+  EXPECT_NEAR(by_kind["solver"][0], 0.012, 1e-5);
+  EXPECT_NEAR(by_kind["law"][0], 0.006, 2e-4);
+  EXPECT_THAT(text(comparison),
+              HasSubstr("Changing only the solver: OpenFOAM papanastasiou ends 12 mm wider than MPM"));
+}
+
+TEST_F(ComparisonTest, ProfileErrorsVanishBetweenARunAndItself) {
+  write_arrested();
+  fs::copy(folder / "evp", folder / "again", fs::copy_options::recursive);
+  const Comparison comparison = compared();
+  ASSERT_EQ(comparison.pairs.size(), 1u);
+  EXPECT_EQ(comparison.pairs[0].kind, "settings");
+  for (const auto& at : comparison.pairs[0].at) EXPECT_EQ(at.error.linf, 0.0) << at.time;
+  EXPECT_NE(comparison.runs[0].label, comparison.runs[1].label);
+}
+
+TEST_F(ComparisonTest, AgainstTheExactProfiles) {
+  synthetic::Slump slump;
+  slump.radius = 0.29997;  // H sqrt(1 - r/R) with R of the leading order is the leading order itself
+  slump.status = runs::Status::at_rest;
+  slump.cell = 0.0025;
+  synthetic::write(slump, folder / "evp");
+  exact::write_exact_runs(scenes::load_scene("roussel-slump"), folder / "exact");
+  const Comparison comparison = compared();
+  ASSERT_EQ(comparison.runs.size(), 3u);
+  for (const Pair& pair : comparison.pairs) {
+    const bool leading = comparison.runs[pair.reference].label == "exact, leading order";
+    const ProfileError& error = pair.at.back().error;
+    if (leading) {
+      EXPECT_LT(error.l1, 2e-4);
+      EXPECT_LT(error.l1_relative, 0.01);
+    } else {
+      EXPECT_GT(error.l1, 1e-3);
+    }
+  }
+  EXPECT_THAT(text(comparison), HasSubstr("596 mm (exact, leading order) and 562 mm (exact, second order)"));
+  EXPECT_THAT(comparison.fair, HasSubstr("quasi-static"));
+}
+
+TEST_F(ComparisonTest, ANoisyRunIsCalledSo) {
+  write_arrested();
+  synthetic::Slump noisy = creeping(4e-3);
+  noisy.solver = "foam";
+  noisy.verdict = "noisy: the initial residual rose to 0.12";
+  synthetic::write(noisy, folder / "foam");
+  Comparison comparison = compared();
+  EXPECT_TRUE(run(comparison, "OpenFOAM papanastasiou").noisy);
+  EXPECT_EQ(run(comparison, "OpenFOAM papanastasiou").measures.cause, Cause::noise);
+  EXPECT_THAT(text(comparison), HasSubstr("noisy: the initial residual rose to 0.12"));
+  noisy.verdict = "sound";
+  synthetic::write(noisy, folder / "foam");
+  comparison = compared();
+  EXPECT_EQ(run(comparison, "OpenFOAM papanastasiou").measures.cause, Cause::unexplained);
+  EXPECT_THAT(text(comparison), Not(HasSubstr("noisy")));
+  noisy.creep = 1e-4;
+  noisy.verdict = "noisy: the initial residual rose to 0.12";
+  synthetic::write(noisy, folder / "foam");
+  EXPECT_EQ(run(compared(), "OpenFOAM papanastasiou").measures.cause, Cause::creep_or_noise);
+}
+
+TEST_F(ComparisonTest, IncompleteRunsAreReadAndCalledSo) {
+  write_arrested();
+  synthetic::Slump cut = creeping(1e-4);
+  cut.end = 12.3;
+  cut.status = runs::Status::interrupted;
+  cut.reason = "by the user";
+  synthetic::write(cut, folder / "cut");
+  runs::RunWriter(folder / "failed", scenes::load_scene("roussel-slump"), "foam")
+      .finish(runs::Status::failed, "a step of 1e-12 s", "sound");
+  const Comparison comparison = compared();
+  EXPECT_THAT(text(comparison),
+              HasSubstr("MPM papanastasiou is incomplete (interrupted at 12.3 s: by the user)"));
+  EXPECT_THAT(text(comparison),
+              HasSubstr("is incomplete (failed before the first record: a step of 1e-12 s)"));
+  EXPECT_FALSE(run(comparison, "MPM papanastasiou").gauge_at(20.0))
+      << "an interrupted run was held past its end";
+  EXPECT_EQ(run(comparison, "MPM papanastasiou").measures.cause, Cause::unknown);
+  EXPECT_TRUE(run(comparison, "MPM elasto-viscoplastic").gauge_at(60.0)) << "a run at rest stays where it is";
+}
+
+TEST_F(ComparisonTest, ADuctStopsOrCreeps) {
+  synthetic::Duct stopping, creeping_duct;
+  stopping.decay = 2.0;
+  creeping_duct.model = Model::papanastasiou;
+  creeping_duct.creep = 1.7e-2;
+  creeping_duct.from_plate = true;  // its y runs from 0 to the height
+  synthetic::write(stopping, folder / "evp");
+  synthetic::write(creeping_duct, folder / "papanastasiou");
+  exact::write_exact_runs(scenes::load_scene("poiseuille-step-down"), folder / "exact");
+  const Comparison comparison = compared();
+  const Measures& evp = run(comparison, "MPM elasto-viscoplastic").measures;
+  const Measures& fluid = run(comparison, "MPM papanastasiou").measures;
+  EXPECT_NEAR(*evp.stop_after_step, 2.0 * 0.99, 0.051);
+  EXPECT_EQ(evp.cause, Cause::at_rest);
+  EXPECT_FALSE(fluid.stop_after_step);
+  EXPECT_NEAR(*fluid.residual, 1.7e-2, 1e-9);
+  EXPECT_NEAR(*fluid.predicted_creep, 1.69e-2, 2e-4);
+  EXPECT_EQ(fluid.cause, Cause::creep);
+  for (const Pair& pair : comparison.pairs) {
+    if (pair.kind != "exact") continue;
+    ASSERT_EQ(pair.at.size(), 2u);
+    EXPECT_EQ(pair.at[0].time, 12.0);
+    EXPECT_LT(pair.at[0].error.l2_relative, 5e-3) << comparison.runs[pair.run].label;
+  }
+  EXPECT_THAT(text(comparison), HasSubstr("stops within 5.9 s of the last change of force"));
+}
+
+TEST_F(ComparisonTest, OneRunAloneIsEnough) {
+  synthetic::write(creeping(1e-4), folder / "only");
+  const Comparison comparison = compared();
+  EXPECT_EQ(comparison.runs.size(), 1u);
+  EXPECT_TRUE(comparison.pairs.empty());
+  EXPECT_FALSE(comparison.runs[0].measures.overshoot_reference);
+  EXPECT_THAT(text(comparison), HasSubstr("MPM papanastasiou stands at"));
+}
+
+TEST_F(ComparisonTest, RunsOfDifferentScenesAreNotPassedOffAsOne) {
+  write_arrested();
+  scenes::Overrides stiffer;
+  stiffer.set = {"material.yield_stress=100"};
+  exact::write_exact_runs(scenes::load_scene("roussel-slump", stiffer), folder / "exact");
+  EXPECT_THAT(compared().notes, ElementsAre(HasSubstr("they differ in material.yield_stress")));
+  synthetic::write(synthetic::Duct{}, folder / "duct");
+  EXPECT_THAT(message_of([&] { compared(); }), HasSubstr("cannot be compared with a"));
+}
+
+TEST_F(ComparisonTest, SaysWhatIsMissing) {
+  EXPECT_THAT(message_of([&] { find_runs({folder / "nowhere"}); }), HasSubstr("there is no such folder"));
+  EXPECT_THAT(message_of([&] { find_runs({folder}); }), HasSubstr("no run.json in it or in its folders"));
+  EXPECT_THAT(message_of([&] { compare_runs({}); }), HasSubstr("at least one run directory"));
+  write_arrested();
+  EXPECT_EQ(find_runs({folder, folder / "evp"}).size(), 1u) << "a run named twice counts once";
+  EXPECT_THAT(message_of([&] { write_comparison(compared(), folder / "evp"); }),
+              HasSubstr("name another folder"));
+}
+
+TEST_F(ComparisonTest, WritesWhatItMeasured) {
+  write_arrested();
+  synthetic::write(creeping(2e-4), folder / "papanastasiou");
+  write_comparison(compared(), folder / "report");
+  std::ifstream file(folder / "report" / "comparison.json");
+  const auto json = nlohmann::ordered_json::parse(file);
+  EXPECT_EQ(json["runs"][0]["measures"]["rest_declared_s"], 20.0);
+  EXPECT_NEAR(json["runs"][1]["measures"]["residual_mm_s"].get<double>(), 0.2, 0.01);
+  EXPECT_NEAR(json["runs"][1]["measures"]["overshoot_at_60s_mm"].get<double>(), 12.0, 0.3);
+  for (const char* name : {"measures.csv", "spread.csv", "profiles.csv"}) {
+    std::ifstream csv(folder / "report" / name);
+    std::string header, row;
+    std::getline(csv, header);
+    std::getline(csv, row);
+    EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ',')) << name;
+    EXPECT_FALSE(row.empty()) << name;
+  }
+}
+
+TEST_F(ComparisonTest, ExactRunsRefuseScenesWithoutASolution) {
+  const auto refusal = [&](const std::string& set) {
+    scenes::Overrides overrides;
+    overrides.set = {set};
+    return message_of(
+        [&] { exact::write_exact_runs(scenes::load_scene("roussel-slump", overrides), folder / "exact"); });
+  };
+  EXPECT_THAT(refusal("material.yield_stress=0"), HasSubstr("without a yield stress"));
+  EXPECT_THAT(refusal("material.yield_stress=5000"), HasSubstr("the cone stands"));
+  EXPECT_THAT(refusal("walls.base=slip"), HasSubstr("base without slip"));
+  EXPECT_FALSE(fs::exists(folder / "exact")) << "something was written all the same";
+}
+
+TEST(Words, CarryNoMoreDigitsThanTheyShould) {
+  EXPECT_EQ(words::spread(0.5756), "576 mm");
+  EXPECT_EQ(words::time(19.42), "19 s");
+  EXPECT_EQ(words::time(4.637), "4.6 s");
+  EXPECT_EQ(words::speed(2.5e-4), "0.25 mm/s");
+  EXPECT_EQ(words::speed(4.44e-6), "0.004 mm/s");
+  EXPECT_EQ(words::speed(1e-9), "less than 0.001 mm/s");
+  EXPECT_EQ(words::velocity(4.0 / 3.0), "1.333 m/s");
+  EXPECT_EQ(words::velocity(1.69e-2), "16.9 mm/s");
+  EXPECT_EQ(words::duration(14.2), "14 s");
+  EXPECT_EQ(words::duration(266.0), "4.4 min");
+  EXPECT_EQ(words::duration(7600.0), "2.1 h");
+  EXPECT_EQ(words::percent(0.0132), "1.3 %");
+  EXPECT_EQ(words::listed({"a", "b", "c"}), "a, b and c");
+  EXPECT_EQ(words::listed({"a", "b"}, "; "), "a; b");
+}
