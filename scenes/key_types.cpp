@@ -97,8 +97,6 @@ Complaint read_steps(const Value& value, std::vector<std::pair<double, double>>&
   return {};
 }
 
-constexpr std::int64_t most_particles_along_an_axis = 16;
-
 Complaint read_particles_by_axis(const std::vector<Value>& axes, const Location& where, Draft& draft) {
   if (axes.size() != 2 && axes.size() != 3) {
     const std::string entries = axes.size() == 1 ? "entry" : "entries";

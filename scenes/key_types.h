@@ -17,6 +17,8 @@ inline constexpr double largest_length = 1e6;   // m
 inline constexpr double largest_stress = 1e15;  // Pa
 inline constexpr double largest_time = 1e12;    // s
 
+inline constexpr std::int64_t most_particles_along_an_axis = 16;
+
 /// Where the setting of a key is kept.
 template <class T>
 using Access = T& (*)(Draft&);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scenes/names.h"
+#include "scenes/key_types.h"
 
 namespace flowrest::scenes {
 
@@ -22,6 +22,22 @@ void refuse(const Given& given, Draft& draft, Faults& faults, const std::string&
   draft.unusable.insert(path);
 }
 
+/// A setting from which another one follows must not lead it out of its range.
+void refuse_outside(const Given& given, Draft& draft, Faults& faults, const std::string& path,
+                    const std::string& what, double number, const Range& range) {
+  if (draft.unusable.contains(path) || range.holds(number)) return;
+  refuse(given, draft, faults, path,
+         fmt::format("{} leads to {} of {:g}; allowed: {}", path, what, number, range.text()));
+}
+
+void resolve_critical_shear_rate(const Given& given, Draft& draft, Faults& faults) {
+  Material& material = draft.scene.material;
+  if (given.gives("material.critical_shear_rate") || !material.regularisation_time) return;
+  material.critical_shear_rate = 1.0 / *material.regularisation_time;
+  refuse_outside(given, draft, faults, "material.regularisation_time", "a critical shear rate",
+                 *material.critical_shear_rate, above(0.0, largest_time));
+}
+
 void resolve_moduli(const Given& given, Draft& draft, Faults& faults) {
   const bool young = given.gives("material.youngs_modulus");
   const bool bulk = given.gives("material.bulk_modulus");
@@ -36,6 +52,8 @@ void resolve_moduli(const Given& given, Draft& draft, Faults& faults) {
   } else if (draft.bulk_modulus) {
     Material& material = draft.scene.material;
     material.youngs_modulus = 3.0 * *draft.bulk_modulus * (1.0 - 2.0 * material.poisson_ratio);
+    refuse_outside(given, draft, faults, "material.bulk_modulus", "a Young's modulus",
+                   material.youngs_modulus, above(0.0, largest_stress));
   }
 }
 
@@ -69,6 +87,10 @@ void resolve_particles(const Given& given, Draft& draft, Faults& faults) {
                        axes.size(), dimension, to_string(draft.scene.geometry.dimension)));
   } else if (const int root = along_each_axis(draft.particles_per_cell.front(), dimension)) {
     axes.assign(dimension, root);
+    if (root <= most_particles_along_an_axis) return;
+    refuse(given, draft, faults, path,
+           fmt::format("{} is {}, {} along each axis; allowed: at most {} along an axis", path,
+                       draft.particles_per_cell.front(), root, most_particles_along_an_axis));
   } else {
     const int number = draft.particles_per_cell.front();
     const double near = std::round(std::pow(number, 1.0 / dimension));
@@ -88,9 +110,7 @@ void resolve(const Given& given, Draft& draft, Faults& faults) {
   resolve_runs(given, scene);
   resolve_moduli(given, draft, faults);
   resolve_particles(given, draft, faults);
-  if (!scene.material.critical_shear_rate && scene.material.regularisation_time) {
-    scene.material.critical_shear_rate = 1.0 / *scene.material.regularisation_time;
-  }
+  resolve_critical_shear_rate(given, draft, faults);
   if (scene.mpm.scheme == Scheme::paper && !scene.mpm.time_step) scene.mpm.time_step = step_of_paper;
   if (!given.gives("foam.cell")) scene.foam.cell = scene.mpm.cell;
 }

@@ -209,6 +209,15 @@ const Wrong wrong_scenes[] = {
     {"ParticlesThatAreNoPower", slump_text, "particles_per_cell = 9", "particles_per_cell = 10",
      "wrong.toml:35:22: mpm.particles_per_cell is 10, neither a square nor a cube; allowed: for example 9, "
      "or an array with one entry for each axis"},
+    {"TooManyParticlesAlongAnAxis", slump_text, "particles_per_cell = 9", "particles_per_cell = 289",
+     "wrong.toml:35:22: mpm.particles_per_cell is 289, 17 along each axis; allowed: at most 16 along an "
+     "axis"},
+    {"ModulusThatUnderflows", duct_text, "bulk_modulus = 0.33e6", "bulk_modulus = 5e-324",
+     "wrong.toml:9:16: material.bulk_modulus leads to a Young's modulus of 0; allowed: greater than 0"},
+    {"RegularisationThatYieldsNowhere", slump_text, "regularisation_time = 100.0",
+     "regularisation_time = 1e-13",
+     "wrong.toml:18:23: material.regularisation_time leads to a critical shear rate of 1e+13; allowed: "
+     "greater than 0"},
     {"NoParticles", slump_text, "particles_per_cell = 9", "particles_per_cell = 0",
      "wrong.toml:35:22: mpm.particles_per_cell is 0; allowed: 1 to 4096"},
     {"ParticlesForTooManyAxes", slump_text, "particles_per_cell = 9", "particles_per_cell = [3, 3, 3]",
