@@ -201,7 +201,7 @@ bool step_is_known(const Case& c) {
 void check_weight(const Case& c) {
   const double volume = volume_under_weight(c.scene());
   if (volume >= least_volume_under_weight) return;
-  c.fault("material.youngs_modulus",
+  c.fault(c.given.gives("material.bulk_modulus") ? "material.bulk_modulus" : "material.youngs_modulus",
           fmt::format(
               "the material is so soft that its own weight presses it to {:.0f} % of its volume; allowed: "
               "moduli that keep at least {:.0f} %",

@@ -307,6 +307,8 @@ const Wrong wrong_scenes[] = {
     {"MaterialCrushedByItsWeight", slump_text, "youngs_modulus = 1.0e5", "youngs_modulus = 1",
      "wrong.toml:16:18: the material is so soft that its own weight presses it to 21 % of its volume; "
      "allowed: moduli that keep at least 50 %"},
+    {"SoftBulkCrushedByItsWeight", slump_text, "youngs_modulus = 1.0e5", "bulk_modulus = 1",
+     "wrong.toml:16:16: the material is so soft that its own weight presses it to 21 % of its volume"},
     {"ThixotropyWithoutYieldStress", thixotropic_text, "yield_stress = 50", "yield_stress = 0",
      "wrong.toml:14:16: the yield stress is 0, but flocculation grows at flocculation_rate / yield_stress; "
      "allowed: a yield stress greater than 0 in scenes"},
