@@ -147,7 +147,8 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
   const scenes::SlumpGeometry cone{*height, *top, *bottom, 0.0, 0.0};
   const auto slump = exact::leading_order_slump({*density, fluid->yield_stress, fluid->plastic_viscosity},
                                                 *gravity, cone.volume());
-  return exact::spread_creep(*fluid, slump.depth(0.5 * slump.radius));
+  return exact::spread_creep(*fluid, slump.radius, slump.depth(0.5 * slump.radius),
+                             view.gauge.empty() ? slump.radius : 0.5 * view.gauge.value.back());
 }
 
 std::optional<double> drift(const Series& series) {
@@ -591,6 +592,12 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
     if (const auto cell = setting(view, "/" + view.solver + "/cell"))
       comparison.cell = std::max(comparison.cell, *cell);
   }
+  // Solvers pass their end time by up to a step: the common end is the one that all who came to it have
+  // reached.
+  const double longest = comparison.end;
+  for (const RunView& view : comparison.runs)
+    if (!view.exact && !view.held && !view.gauge.empty() && view.gauge.end() > 0.99 * longest)
+      comparison.end = std::min(comparison.end, view.gauge.end());
   if (!(comparison.end > 0.0))
     for (const RunView& view : comparison.runs)
       if (!view.gauge.empty()) comparison.end = std::max(comparison.end, view.gauge.end());

@@ -218,6 +218,19 @@ TEST_F(ComparisonTest, ADuctStopsOrCreeps) {
   EXPECT_THAT(text(comparison), HasSubstr("stops within 5.9 s of the last change of force"));
 }
 
+TEST_F(ComparisonTest, RunsThatPassTheirEndByAStepEndTogether) {
+  synthetic::Slump one = creeping(1e-4), other = creeping(2e-4);
+  other.end = 60.05;
+  other.solver = "foam";
+  synthetic::write(one, folder / "one");
+  synthetic::write(other, folder / "other");
+  const Comparison comparison = compared();
+  EXPECT_EQ(comparison.end, 60.0);
+  ASSERT_EQ(comparison.pairs.size(), 1u);
+  EXPECT_EQ(comparison.pairs[0].at.back().time, 60.0);
+  EXPECT_THAT(text(comparison), HasSubstr("The regularised fluids have not come to rest by 60 s: MPM"));
+}
+
 TEST_F(ComparisonTest, OneRunAloneIsEnough) {
   synthetic::write(creeping(1e-4), folder / "only");
   const Comparison comparison = compared();

@@ -69,7 +69,8 @@ std::string fluid_clause(const RunView& view) {
 std::vector<std::string> fluid_sentences(const Comparison& comparison) {
   std::map<double, std::vector<std::string>> by_end;
   for (const RunView& view : comparison.runs)
-    if (view.fluid && !view.gauge.empty()) by_end[*view.measures.end].push_back(fluid_clause(view));
+    if (view.fluid && !view.gauge.empty())
+      by_end[std::round(2.0 * *view.measures.end) / 2.0].push_back(fluid_clause(view));
   std::vector<std::string> sentences;
   for (const auto& [end, clauses] : by_end)
     sentences.push_back(
@@ -137,6 +138,24 @@ std::string split_sentence(const Comparison& comparison) {
   return text;
 }
 
+/// Runs whose spread depends on the depth at which it is read: their edge is a film.
+std::string edge_sentence(const Comparison& comparison) {
+  std::vector<std::string> films;
+  for (const RunView& view : comparison.runs) {
+    const Measures& m = view.measures;
+    if (view.exact || !m.spread_1_5mm || !m.spread_6mm || !(comparison.cell > 0.0)) continue;
+    if (*m.spread_1_5mm - *m.spread_6mm < 3.0 * comparison.cell) continue;
+    films.push_back(
+        fmt::format("{} ({:.0f} to {:.0f} mm)", view.label, 1e3 * *m.spread_6mm, 1e3 * *m.spread_1_5mm));
+  }
+  return films.empty()
+             ? ""
+             : fmt::format(
+                   "The edge is a thin film, so that the spread depends on whether it is read at 6 mm or "
+                   "at 1.5 mm of depth: {}.",
+                   listed(films));
+}
+
 std::string cost_sentence(const Comparison& comparison) {
   std::vector<std::string> costs;
   for (const RunView& view : comparison.runs)
@@ -172,6 +191,7 @@ void describe_slump(Comparison& comparison) {
     tell(comparison, Topic::stop, std::move(sentence));
   tell(comparison, Topic::difference, split_sentence(comparison));
   tell(comparison, Topic::difference, cause_sentence(comparison));
+  tell(comparison, Topic::difference, edge_sentence(comparison));
   if (!exact.empty())
     tell(comparison, Topic::context, fmt::format("The quasi-static solutions give {}.", listed(exact)));
 }

@@ -56,8 +56,11 @@ double film_velocity(const RegularisedFluid& fluid, double depth, double base_st
                               [](double tau, double g) { return tau * g; });
 }
 
-double spread_creep(const RegularisedFluid& fluid, double depth_at_half_radius) {
-  return 4.0 * film_velocity(fluid, depth_at_half_radius, fluid.yield_stress);
+double spread_creep(const RegularisedFluid& fluid, double arrested_radius, double depth_at_half_radius,
+                    double radius) {
+  const double past = std::min(1.0, arrested_radius / radius);
+  return 4.0 *
+         film_velocity(fluid, depth_at_half_radius * past * past, fluid.yield_stress * std::pow(past, 5));
 }
 
 double duct_creep(const RegularisedFluid& fluid, double height, double force) {

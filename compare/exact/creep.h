@@ -23,11 +23,14 @@ struct RegularisedFluid {
 /// dtau. On a bi-viscous fluid at the yield stress it is tau0 depth/(3 eta0). m/s
 double film_velocity(const RegularisedFluid&, double depth, double base_stress);
 
-/// Rate at which the spread (twice the radius) of an arrested slump of radius R goes on growing. The base of
-/// the arrested profile carries the yield stress everywhere, hence the depth-mean velocity u at r = R/2 by
-/// film_velocity. If the shape stays similar while it creeps, h = H f(r/R) with H R^2 constant, continuity
-/// gives u = r (dR/dt)/R, so d(2R)/dt = 4 u(R/2). m/s
-double spread_creep(const RegularisedFluid&, double depth_at_half_radius);
+/// Rate at which the spread (twice the radius) of a slump of radius R goes on growing. The base of the
+/// profile arrested at R0 carries the yield stress everywhere, hence the depth-mean velocity u at half the
+/// radius by film_velocity. If the shape stays similar while it creeps, h = H f(r/R) with H R^2 constant,
+/// continuity gives u = r (dR/dt)/R, so d(2R)/dt = 4 u(R/2). Past R0 the depth falls as (R0/R)^2 and the base
+/// stress, rho g h dh/dr, as (R0/R)^5; short of it the yield stress is kept: what still flows there is no
+/// creep. m/s
+double spread_creep(const RegularisedFluid&, double arrested_radius, double depth_at_half_radius,
+                    double radius);
 
 /// Velocity of the middle of a duct under a steady force (N/m3): (1/F) int_0^{F H/2} g dtau. m/s
 double duct_creep(const RegularisedFluid&, double height, double force);

@@ -150,6 +150,15 @@ TEST(Creep, OfTheArrestedRousselSlump) {
   EXPECT_NEAR(velocity(1e9) * 1e9 / depth, 0.75, 1e-4);
 }
 
+TEST(Creep, OfASpreadSlowsPastTheArrestedRadius) {
+  const RegularisedFluid fluid{RegularisedFluid::Law::bi_viscous, 50.0, 50.0, 100.0};
+  const double at_arrest = 4.0 * 50.0 * 0.026 / (3.0 * 5050.0);
+  EXPECT_NEAR(spread_creep(fluid, 0.3, 0.026, 0.3), at_arrest, 1e-12);
+  EXPECT_EQ(spread_creep(fluid, 0.3, 0.026, 0.28), spread_creep(fluid, 0.3, 0.026, 0.3));
+  // Below yield the bi-viscous film is Newtonian: u ~ stress depth ~ R^-7.
+  EXPECT_NEAR(spread_creep(fluid, 0.3, 0.026, 0.33), at_arrest * std::pow(0.3 / 0.33, 7), 1e-12);
+}
+
 TEST(Creep, OfTheSteppedDownDuct) {
   const std::pair<double, double> known[] = {
       {10.0, 1.69e-2}, {100.0, 1.84e-3}, {1e3, 1.86e-4}, {1e4, 1.86e-5}};

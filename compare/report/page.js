@@ -327,7 +327,7 @@
     colourBars();
     chart.update();
     byId('caption-residual').textContent = slump
-      ? `Measured: the median slope of the spread over the last ${limits.residual_window_s} s. Predicted: on the arrested profile, whose base carries the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays similar then grows in diameter by 4 u. A run of a law that comes to rest has no predicted creep.`
+      ? `Measured: the median slope of the spread over the last ${limits.residual_window_s} s. Predicted: on the arrested profile, whose base carries the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays similar then grows in diameter by 4 u. Past the arrested radius the base stress falls with its fifth power, and the creep with it. A run of a law that comes to rest has no predicted creep.`
       : 'Predicted: the steady velocity of the regularised law under the last force, from its flow curve.';
     table('table-residual', [
       nameColumn,
