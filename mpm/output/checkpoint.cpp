@@ -14,8 +14,7 @@ namespace {
 /// RunState as a row of numbers, and back: one list of members serves both.
 template <class State, class Use>
 void each_member(State& s, Use use) {
-  for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated, &s.work, &s.work_rate,
-                       &s.work_time, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles, &s.snapshots,
+  for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated, &s.work, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles, &s.snapshots,
                        &s.checkpoints})
     use(*member);
 }

@@ -18,8 +18,6 @@ struct RunState {
   double largest_pressure = 0.0; ///< Pa
   double dissipated = 0.0;       ///< J, whole body
   double work = 0.0;             ///< J, done by the driving force
-  double work_rate = 0.0;        ///< W, at the last gauging
-  double work_time = 0.0;        ///< s, of the last gauging
   double initial_energy = 0.0;   ///< J
   double calm_since = -1.0;      ///< s, since when the rest bound has held; -1 where it does not
   double cpu = 0.0;              ///< s, spent so far

@@ -121,6 +121,7 @@ class MpmRun {
     state_.largest_speed = result.largest_speed;
     state_.largest_pressure = result.largest_pressure;
     state_.dissipated += factor_ * result.dissipated;
+    if (!scene_.forces.body_force.empty()) state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
     state_.time = step >= target - state_.time ? target : state_.time + step;
     const double sound = scene_.material.longitudinal_speed();
@@ -143,11 +144,6 @@ class MpmRun {
     measures_ = gauges_.measure(*solver_);
     Energies& e = measures_.energies;
     e.dissipated = state_.dissipated;
-    // Work of a duct's driving force, by the trapezoidal rule over the rows of the history.
-    const double rate = acceleration_at(scene_, state_.time)[0] * scene_.material.density * measures_.volume_at_rest * measures_.mean_velocity;
-    state_.work += 0.5 * (rate + state_.work_rate) * (state_.time - state_.work_time);
-    state_.work_rate = rate;
-    state_.work_time = state_.time;
     if (state_.steps > 0.0) e.numerical = state_.initial_energy + state_.work - total_energy() - e.dissipated;
     check_bounds();
   }

@@ -40,6 +40,7 @@ struct BlockSums {
   double largest_speed_squared = 0.0;  ///< m2/s2
   double largest_pressure = 0.0;       ///< Pa
   double dissipated = 0.0;             ///< J
+  double momentum = 0.0;               ///< kg m/s along the first axis, of the motion itself
   std::uint32_t movers = 0;
   std::uint32_t faults = 0;  ///< particles that moved further than a cell or are not finite
 };

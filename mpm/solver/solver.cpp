@@ -222,6 +222,7 @@ class SolverOf final : public Solver {
       speed_squared = std::max(speed_squared, s.largest_speed_squared);
       result.largest_pressure = std::max(result.largest_pressure, s.largest_pressure);
       result.dissipated += s.dissipated;
+      result.momentum += s.momentum;
       faults += s.faults;
       moved_ |= s.movers > 0;
     }

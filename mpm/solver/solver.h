@@ -46,6 +46,7 @@ struct StepResult {
   double largest_speed = 0.0;     ///< m/s
   double largest_pressure = 0.0;  ///< Pa
   double dissipated = 0.0;        ///< J in this step
+  double momentum = 0.0;          ///< kg m/s along the first axis, of the velocities that moved the particles
 };
 
 /// The particles of one block in double precision, in an order that depends on nothing but the motion.

@@ -847,8 +847,9 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
 
   // Motion. `left` counts axes along which a particle left its cell; a value that is not finite fails every comparison.
   T* left = s.shear;
+  T momentum = T(0);
   const T per_step = dt * per_cell;
-#pragma omp simd reduction(max : largest_speed)
+#pragma omp simd reduction(max : largest_speed) reduction(+ : momentum)
   for (int q = 0; q < count; ++q) {
     T square = T(0), outside = T(0);
     for (int a = 0; a < Dim; ++a) {
@@ -859,6 +860,7 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
       x[a][q] = to;
     }
     left[q] = outside;
+    momentum += mass[q] * advection[0][q];
     largest_speed = largest_speed > square ? largest_speed : square;
   }
   BlockSums& sums = *tile.block.sums;
@@ -878,6 +880,7 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
   }
   for (int a = 0; a < Dim; ++a) tile.close(particles.position[a], x[a]);
 
+  sums.momentum += static_cast<double>(momentum);
   sums.dissipated += static_cast<double>(dissipated) * static_cast<double>(dt / step.density);
   if (static_cast<double>(largest_pressure) > sums.largest_pressure) sums.largest_pressure = static_cast<double>(largest_pressure);
   if (static_cast<double>(largest_speed) > sums.largest_speed_squared) sums.largest_speed_squared = static_cast<double>(largest_speed);
