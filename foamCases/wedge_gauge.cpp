@@ -47,12 +47,15 @@ class Component {
   std::size_t component_;
 };
 
+/// Going down, air is trapped where a cell is less full than the fullest one above it; a flank that leans
+/// inwards traps none.
 double trapped_air_in_column(const WedgeGrid& grid, const std::vector<double>& fraction, int ring) {
-  int top = grid.rows() - 1;
-  while (top >= 0 && fraction[grid.index(ring, top)] < half_full) --top;
+  double fullest_above = 0.0;
   double air = 0.0;
-  for (int row = 0; row < top; ++row)
-    air += (1.0 - fraction[grid.index(ring, row)]) * grid.cell_volume(ring, row);
+  for (int row = grid.rows() - 1; row >= 0; --row) {
+    fullest_above = std::max(fullest_above, fraction[grid.index(ring, row)]);
+    air += (fullest_above - fraction[grid.index(ring, row)]) * grid.cell_volume(ring, row);
+  }
   return air;
 }
 

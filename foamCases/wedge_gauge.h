@@ -21,7 +21,7 @@ struct SlumpGauges {
   double shear_rate_p99 =
       0.0;             ///< 1/s, the 99th percentile by volume over cells at least 90 % full; 0 without any
   double front = 0.0;  ///< m, twice the radius at which the base row is half full; 0 where it nowhere is
-  double trapped_air = 0.0;  ///< m3, air below concrete: under the topmost cell of a column that is half full
+  double trapped_air = 0.0;  ///< m3, of air with fuller cells above it
   double rim_depth = 0.0;    ///< m, depth in the outermost ring
 };
 

@@ -92,6 +92,13 @@ TEST(WedgeGauge, FindsAirUnderTheToe) {
   EXPECT_NEAR(gauge_slump(grid, fields, 2300.0, false).trapped_air, 0.8 * grid.cell_volume(ring, 0), 1e-15);
 }
 
+TEST(WedgeGauge, AFlankThatLeansInwardsTrapsNoAir) {
+  const auto grid = grid_of_cells(0.01);
+  auto fields = still_air(grid);
+  for (int row = 0; row < grid.cone_rows; ++row) fields.fraction[grid.index(7, row)] = 1.0 - 0.03 * row;
+  EXPECT_EQ(gauge_slump(grid, fields, 2300.0, false).trapped_air, 0.0);
+}
+
 TEST(WedgeGauge, FindsTheFrontOfTheBaseRow) {
   const auto grid = grid_of_cells(0.01);
   auto fields = still_air(grid);
