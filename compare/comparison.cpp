@@ -161,7 +161,8 @@ Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
   // A record that was cut off may have been cut off while it still flowed.
   if (!m.residual || !view.trouble.empty()) return Cause::unknown;
   const double speed = std::abs(*m.residual);
-  if (!view.fluid) return view.held || speed <= rest_speed ? Cause::at_rest : Cause::approaching_rest;
+  if (!view.fluid)
+    return speed <= rest_speed ? Cause::at_rest : view.held ? Cause::within_bound : Cause::approaching_rest;
   const bool explained = m.predicted_creep && speed <= options.creep_factor * *m.predicted_creep;
   if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
   if (view.noisy) return Cause::noise;
@@ -194,7 +195,7 @@ void measure(RunView& view, const Comparison& comparison) {
     return;
   }
   m.rest_declared = number(info, "/rest_time_s");
-  if (const auto growth = number(info, "/growth_to_come"); slump && growth && m.gauge_end)
+  if (const auto growth = number(info, "/growth_to_come"); slump && !view.fluid && growth && m.gauge_end)
     m.growth_to_come = *growth * *m.gauge_end;
   m.cpu = number(info, "/cpu_s");
   m.wall = number(info, "/wall_s");
@@ -473,6 +474,8 @@ std::string to_string(Cause cause) {
   switch (cause) {
     case Cause::at_rest:
       return "at rest";
+    case Cause::within_bound:
+      return "little: at rest by the run's own bound on what is to come";
     case Cause::approaching_rest:
       return "still approaching rest";
     case Cause::creep:

@@ -28,7 +28,16 @@ struct Options {
 };
 
 /// Why a run still moves at its end, as far as known.
-enum class Cause { at_rest, approaching_rest, creep, creep_or_noise, noise, unexplained, unknown };
+enum class Cause {
+  at_rest,
+  within_bound,
+  approaching_rest,
+  creep,
+  creep_or_noise,
+  noise,
+  unexplained,
+  unknown
+};
 std::string to_string(Cause);
 
 /// What is measured of one run. Spreads in m, velocities in m/s. Empty: not measurable, or without meaning

@@ -218,6 +218,19 @@ TEST_F(ComparisonTest, ADuctStopsOrCreeps) {
   EXPECT_THAT(text(comparison), HasSubstr("stops within 5.9 s of the last change of force"));
 }
 
+TEST_F(ComparisonTest, RestByABoundSaysWhatMayStillCome) {
+  synthetic::Slump early;
+  early.end = 5.0;  // its spread still grows by about 1 mm/s
+  early.status = runs::Status::at_rest;
+  synthetic::write(early, folder / "evp");
+  auto info = runs::read_run(folder / "evp").info;
+  info["growth_to_come"] = 0.006;
+  runs::write_atomically(folder / "evp" / "run.json", info.dump());
+  const Comparison comparison = compared();
+  EXPECT_EQ(comparison.runs[0].measures.cause, Cause::within_bound);
+  EXPECT_THAT(text(comparison), HasSubstr("with at most 4 mm still to come"));
+}
+
 TEST_F(ComparisonTest, RunsThatPassTheirEndByAStepEndTogether) {
   synthetic::Slump one = creeping(1e-4), other = creeping(2e-4);
   other.end = 60.05;
