@@ -48,7 +48,9 @@ struct ElastoViscoplastic {
       const T xi = viscosity + dt * p.deflocculation * (p.yield_stress - trial);
       const T zeta = T(2) * p.deflocculation * dt * viscosity;
       const T root = square_root(xi * xi + T(2) * zeta * excess);
-      const T rate = xi >= T(0) ? T(2) * excess / (xi + root) : (root - xi) / maximum(zeta, T(1e-30));
+      const T flow = xi >= T(0) ? T(2) * excess / (xi + root) : (root - xi) / maximum(zeta, T(1e-30));
+      // Where breakdown is so strong that xi < 0 the balance has a second root at yield: below it nothing flows all the same.
+      const T rate = excess > T(0) ? flow : T(0);
       return {trial - shear * rate, rate, lambda_trial / (T(1) + dt * p.deflocculation * rate)};  // Eq. 45
     }
   }
@@ -89,29 +91,34 @@ struct Newtonian {
 };
 
 /// Papanastasiou-regularised Bingham fluid, tau(x) = eta x + yield (1 - exp(-m x)), Yu et al. 2026, Eqs. 10 and 13.
-/// The balance is concave in x, so Newton's method approaches the root from below without overshoot once it is below it;
-/// the Bingham solution is such a start. `iterative`: the loop over particles calls `iterate` until all have converged.
+/// The balance falls and is convex in x, so Newton's method approaches the root from below without overshoot once it is
+/// below it; the Bingham solution is such a start. `iterative`: the loop over particles calls `iterate` until all balance.
 template <bool Thixotropic>
 struct Papanastasiou {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = true;
 
-  /// One Newton step from `rate`, never below the Bingham solution.
+  /// The balance at a rate, Pa, and Newton's next one, never below the Bingham solution. The balance and not the rate says
+  /// when to stop: near yield a rate is known less well than a stress by orders of magnitude.
   template <class T>
-  static FLOWREST_INLINE T iterate(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
+  struct Iterate {
+    T residual, rate;
+  };
+  template <class T>
+  static FLOWREST_INLINE Iterate<T> iterate(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
     const T viscosity = shear + p.plastic_viscosity;
     const T floor = maximum(trial - yield, T(0)) / viscosity;
-    const T decay = exponential(-p.regularisation_time * rate);
-    const T residual = trial - viscosity * rate - yield * (T(1) - decay);
-    const T slope = viscosity + yield * p.regularisation_time * decay;
-    return maximum(rate + residual / slope, floor);
+    const T lost = exponential_minus_one(-p.regularisation_time * rate);  // exp(-m x) - 1, exact at creep rates too
+    const T residual = trial - viscosity * rate + yield * lost;
+    const T slope = viscosity + yield * p.regularisation_time * (T(1) + lost);
+    return {residual, maximum(rate + residual / slope, floor)};
   }
 };
 
 /// Shear stress of a fluid at a given rate: the explicit update, and the reference of the implicit one. Pa.
 template <class T>
 FLOWREST_INLINE T papanastasiou_stress(const FlowParameters<T>& p, T yield, T rate) {
-  return p.plastic_viscosity * rate + yield * (T(1) - exponential(-p.regularisation_time * rate));
+  return p.plastic_viscosity * rate - yield * exponential_minus_one(-p.regularisation_time * rate);
 }
 
 template <class T>

@@ -28,9 +28,15 @@ FLOWREST_INLINE T minimum(T a, T b) {
 FLOWREST_INLINE double square_root(double x) { return __builtin_sqrt(x); }
 FLOWREST_INLINE float square_root(float x) { return __builtin_sqrtf(x); }
 
-/// e^x to about one unit in the last place for |x| <= 700; beyond, the argument is clamped. Cody-Waite reduction to
-/// |r| <= ln(2)/2 and a Taylor polynomial; 2^n is made in the exponent bits, where adding 1.5 * 2^52 has put n.
-FLOWREST_INLINE double exponential(double x) {
+/// e^x = scale (1 + fraction), scale a power of two and |fraction| < 1/2.
+template <class T>
+struct ExponentialParts {
+  T fraction, scale;
+};
+
+/// For |x| <= 700; beyond, the argument is clamped. Cody-Waite reduction to |r| <= ln(2)/2 and a Taylor polynomial; 2^n is
+/// made in the exponent bits, where adding 1.5 * 2^52 has put n.
+FLOWREST_INLINE ExponentialParts<double> exponential_parts(double x) {
   x = minimum(maximum(x, -700.0), 700.0);
   constexpr double shift = 0x1.8p52;
   const double shifted = x * 1.44269504088896340736 + shift;
@@ -49,12 +55,11 @@ FLOWREST_INLINE double exponential(double x) {
   sum = sum * r + 1.0 / 6.0;
   sum = sum * r + 0.5;
   sum = sum * r + 1.0;
-  sum = sum * r + 1.0;
-  return sum * std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023u) << 52);
+  return {sum * r, std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023u) << 52)};
 }
 
 /// As above for |x| <= 87.
-FLOWREST_INLINE float exponential(float x) {
+FLOWREST_INLINE ExponentialParts<float> exponential_parts(float x) {
   x = minimum(maximum(x, -87.0f), 87.0f);
   constexpr float shift = 0x1.8p23f;
   const float shifted = x * 1.44269504f + shift;
@@ -67,8 +72,21 @@ FLOWREST_INLINE float exponential(float x) {
   sum = sum * r + 1.0f / 6.0f;
   sum = sum * r + 0.5f;
   sum = sum * r + 1.0f;
-  sum = sum * r + 1.0f;
-  return sum * std::bit_cast<float>((std::bit_cast<std::uint32_t>(shifted) + 127u) << 23);
+  return {sum * r, std::bit_cast<float>((std::bit_cast<std::uint32_t>(shifted) + 127u) << 23)};
+}
+
+/// e^x to about one unit in the last place.
+template <class T>
+FLOWREST_INLINE T exponential(T x) {
+  const auto parts = exponential_parts(x);
+  return (parts.fraction + T(1)) * parts.scale;
+}
+
+/// e^x - 1 to a few units in the last place, also where x is so small that e^x is one to round-off.
+template <class T>
+FLOWREST_INLINE T exponential_minus_one(T x) {
+  const auto parts = exponential_parts(x);
+  return parts.scale * parts.fraction + (parts.scale - T(1));
 }
 
 }  // namespace flowrest::mpm

@@ -701,17 +701,16 @@ template <class T, int Dim, bool Thixotropic>
 void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   using Law = Papanastasiou<Thixotropic>;
   if constexpr (Thixotropic) flocculate(step, s, count);
-  const T tolerance = sizeof(T) == 8 ? T(1e-13) : T(1e-6);
+  const T tolerance = sizeof(T) == 8 ? T(1e-14) : T(2e-6);  // of the trial's stress
   for (int iteration = 0; iteration < 100; ++iteration) {
     T change = T(0);
 #pragma omp simd reduction(max : change)
     for (int q = 0; q < count; ++q) {
       const T before = s.rate[q];
-      const T after = Law::template iterate<T>(step.flow, fluid_yield<T, Dim, Thixotropic>(step, s, q), s.trial[q], s.shear[q], before);
-      const T moved = after > before ? after - before : before - after;
-      const T relative = moved / (after + T(1e-30));
-      // A particle that has converged stays as it is, so that its result does not depend on its neighbours in the tile.
-      s.rate[q] = relative > tolerance ? after : before;
+      const auto next = Law::template iterate<T>(step.flow, fluid_yield<T, Dim, Thixotropic>(step, s, q), s.trial[q], s.shear[q], before);
+      const T relative = (next.residual > T(0) ? next.residual : -next.residual) / (s.trial[q] + T(1e-30));
+      // A particle that balances stays as it is, so that its result does not depend on its neighbours in the tile.
+      s.rate[q] = relative > tolerance ? next.rate : before;
       change = change > relative ? change : relative;
     }
     if (!(change > tolerance)) break;
