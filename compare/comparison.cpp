@@ -215,7 +215,7 @@ void measure(RunView& view, const Comparison& comparison) {
     if (m.rest_by_spread_rate && *m.rest_by_spread_rate <= view.gauge.time.front())
       m.rest_by_spread_rate.reset();
     if (last) m.residual = last->slope;
-    m.cause = cause_of(view, options, options.rest_spread_rate);
+    m.cause = cause_of(view, options, options.still_speed);
   } else {
     const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
     const double threshold = options.rest_velocity_fraction * largest;

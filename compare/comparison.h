@@ -16,8 +16,9 @@ namespace flowrest::compare {
 
 /// What the measures are taken by. Every threshold is named in comparison.json.
 struct Options {
-  double rest_shear_rate = 0.01;   ///< 1/s: at rest once the 99th percentile of the shear rate stays below
-  double rest_spread_rate = 1e-4;  ///< m/s: at rest once the spread grows by less
+  double rest_shear_rate = 0.05;   ///< 1/s: at rest once the 99th percentile of the shear rate stays below
+  double rest_spread_rate = 5e-4;  ///< m/s: at rest once the spread grows by less
+  double still_speed = 1e-4;       ///< m/s: a law that can rest, and spreads slower than this, has come to rest
   double rest_velocity_fraction = 0.01;  ///< of a duct's largest plug velocity: stopped once it stays below
   double rate_window = 2.0;              ///< s, over which rates are taken
   double residual_window = 5.0;          ///< s, the last of a run, for its residual speed

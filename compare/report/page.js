@@ -301,7 +301,8 @@
   const references = [...new Set(runs.map(run => run.measures.overshoot_reference_run).filter(Boolean))];
   byId('thresholds').textContent = slump
     ? `A run is at rest by shear rate once the 99th percentile of the shear rate stays below ${limits.rest_shear_rate_p99_1_s} 1/s, and by spread rate ` +
-      `once the spread grows by less than ${limits.rest_spread_rate_mm_s} mm/s over ${limits.rate_window_s} s, up to the end of its record. A dash: not measured, or never. ` +
+      `once the spread grows by less than ${limits.rest_spread_rate_mm_s} mm/s over ${limits.rate_window_s} s, up to the end of its record. A dash: not measured, or never. These thresholds are customary, not criteria: a fluid that creeps for ever passes them too. ` +
+      'The volume of a material point run includes its elastic compression. ' +
       (references.length ? `Arrested spread: that of ${references.join(', and of ')}.` : 'No run of the elasto-viscoplastic law is among these, so there is no arrested spread to count from.')
     : `A duct has stopped once its plug stays below ${100 * limits.rest_velocity_fraction} % of its largest velocity. A dash: not measured, or never.`;
 

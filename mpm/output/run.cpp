@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <optional>
 
 #include "mpm/output/checkpoint.h"
@@ -176,13 +175,16 @@ class MpmRun {
       while (due(state_.checkpoints, scene_.output.checkpoint_interval)) state_.checkpoints += 1.0;
       if (state_.time > 0.0) checkpoint();
     }
-    progress_.update(state_.time, fmt::format("t = {:.2f} s, {}, growth to come {:.2g} %", state_.time, gauges_.headline(measures_),
-                                              100.0 * growth_to_come()));
+    std::string progress = fmt::format("t = {:.2f} s, {}", state_.time, gauges_.headline(measures_));
+    if (can_rest()) progress += fmt::format(", growth to come {:.2g} %", 100.0 * growth_to_come());
+    progress_.update(state_.time, progress);
   }
+
+  /// A fluid is never at rest, and nothing bounds the growth of what has no yield stress.
+  bool can_rest() const { return scene_.material.model == scenes::Model::elasto_viscoplastic && settings_.flow.yield_stress > 0.0; }
 
   /// Bound on the relative growth of the spread still to come.
   double growth_to_come() const {
-    if (settings_.flow.yield_stress <= 0.0) return std::numeric_limits<double>::infinity();
     return growth_per_overstress * settings_.flow.plastic_viscosity * measures_.shear_rate_p99 / settings_.flow.yield_stress;
   }
 
@@ -197,7 +199,7 @@ class MpmRun {
   }
 
   void follow_rest() {
-    if (scene_.material.model != scenes::Model::elasto_viscoplastic || !(growth_to_come() < scene_.time.rest_bound)) {
+    if (!can_rest() || !(growth_to_come() < scene_.time.rest_bound)) {
       state_.calm_since = -1.0;
     } else if (state_.calm_since < 0.0) {
       state_.calm_since = state_.time;
@@ -239,7 +241,7 @@ class MpmRun {
     const StageTimes& t = solver_->stage_times();
     info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid}, {"nodes", t.nodes},
                             {"grid_to_particles", t.grid_to_particles}, {"sorting", t.sorting}};
-    info["growth_to_come"] = std::isfinite(growth_to_come()) ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
+    info["growth_to_come"] = can_rest() ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
     info["rest_time_s"] = has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
   }
 
