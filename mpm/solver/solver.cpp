@@ -8,6 +8,7 @@
 
 #include "mpm/material/deviator.h"
 #include "mpm/solver/particles.h"
+#include "mpm/transfer/shape.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::mpm {
@@ -30,8 +31,7 @@ class SolverOf final : public Solver {
     for (std::size_t p = 0; p < seeds.size(); ++p) {
       cells[p] = seeds[p].cell;
       for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
-        constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
-        v.position[a][p] = std::min(static_cast<T>(seeds[p].position[a]), below_one);
+        v.position[a][p] = std::clamp(static_cast<T>(seeds[p].position[a]), lowest_in_cell(), highest_in_cell());
         v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
       }
       v.mass[p] = static_cast<T>(seeds[p].volume * settings.density);
@@ -131,13 +131,18 @@ class SolverOf final : public Solver {
     // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep every real
     // contribution and large enough that its inverse stays finite.
     const double full = settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
-    p.smallest_mass = static_cast<T>(full * 1e-15);
+    p.smallest_mass = static_cast<T>(full * 1e-25);
   }
 
   static bool is_thixotropic(Law law) {
     return law == Law::elasto_viscoplastic_thixotropic || law == Law::papanastasiou_thixotropic ||
            law == Law::bi_viscous_thixotropic;
   }
+
+  /// Bounds of a place within a cell, for particles that are put there.
+  T margin() const { return static_cast<T>(settings_.transfer == Transfer::linear_flip ? Linear::margin : Quadratic::margin); }
+  T lowest_in_cell() const { return margin(); }
+  T highest_in_cell() const { return std::min(T(1) - margin(), sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f)); }
 
   void prepare() {
     const std::size_t node_values = static_cast<std::size_t>(kernels_.records) * record;
@@ -239,8 +244,8 @@ class SolverOf final : public Solver {
     ++steps_;
     if (moved_) {
       blocks_.relocate(held_, threads_);
-      constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
-      for (const auto& h : held_) particles_.view().position[h.axis][h.particle] = h.upper ? below_one : T(0);
+      for (const auto& h : held_)
+        particles_.view().position[h.axis][h.particle] = h.upper ? highest_in_cell() : lowest_in_cell();
       stale_ = true;
     }
     if (steps_ % steps_between_rearrangements == 0 && blocks_.disorder() > disorder_worth_rearranging) rearrange();

@@ -872,7 +872,8 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
       const int shift = to < T(0) ? -1 : 1;
       const T inside = to - T(shift);
       if (!(inside >= T(0) && inside <= T(1))) ++sums.faults;  // further than a cell, or not finite
-      to = minimum(maximum(inside, T(0)), sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f));
+      const T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
+      to = minimum(maximum(inside, T(Shape::margin)), minimum(T(1.0 - Shape::margin), below_one));
       mover.shift[a] = static_cast<std::int8_t>(shift);
     }
     tile.block.movers[sums.movers++] = mover;

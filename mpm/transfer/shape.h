@@ -25,6 +25,8 @@ struct Quadratic {
   }
   /// Cell widths squared over the second moment of the weights: APIC's D^-1 (Jiang et al. 2015, section 5.3).
   static constexpr double inverse_moment = 4.0;
+  /// How far from a cell's faces a particle that enters it is kept, in cells: slopes vanish with the weights.
+  static constexpr double margin = 0.0;
 };
 
 /// Linear functions with nodes at the cell's corners.
@@ -38,6 +40,9 @@ struct Linear {
   static FLOWREST_INLINE T slope(int node, T) {
     return node == 0 ? T(-1) : T(1);
   }
+  /// As above. Slopes stay one where a weight vanishes, so a particle right on a face would see the velocity gradient to
+  /// a node that nothing has given a mass.
+  static constexpr double margin = 0x1p-20;
 };
 
 }  // namespace flowrest::mpm

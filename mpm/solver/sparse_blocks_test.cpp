@@ -1,0 +1,229 @@
+#include "mpm/solver/sparse_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "mpm/test_random.h"
+
+using namespace flowrest::mpm;
+using flowrest::mpm::test::Random;
+
+namespace {
+
+using Block = std::array<std::int32_t, 3>;
+
+std::int32_t floor_quarter(std::int32_t c) { return c >= 0 ? c / 4 : -((3 - c) / 4); }
+
+/// The same bookkeeping without any block: every particle's cell, and the order all particles come in.
+struct BruteForce {
+  int dimension;
+  std::array<AxisBounds, 3> bounds;
+  std::vector<CellIndex> cells;
+  std::vector<std::uint32_t> order;
+
+  Block block_of(const CellIndex& c) const {
+    Block b{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) b[a] = floor_quarter(c[a]);
+    return b;
+  }
+
+  /// Moves each particle, holding it at walls and wrapping it where periodic. Residents of a block stay before arrivals.
+  std::set<std::pair<std::uint32_t, int>> move(const std::vector<std::array<int, 3>>& shifts) {
+    std::set<std::pair<std::uint32_t, int>> held;
+    std::vector<bool> arrived(cells.size(), false);
+    for (std::uint32_t p = 0; p < cells.size(); ++p) {
+      const Block before = block_of(cells[p]);
+      for (int a = 0; a < dimension; ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        std::int32_t to = cells[p][i] + shifts[p][i];
+        const AxisBounds& b = bounds[i];
+        if (b.periodic) {
+          const int period = b.upper_cell - b.lower_cell;
+          to = b.lower_cell + ((to - b.lower_cell) % period + period) % period;
+        } else if ((b.lower != PlaneWall::none && to < b.lower_cell) || (b.upper != PlaneWall::none && to >= b.upper_cell)) {
+          held.insert({p, a});
+          continue;
+        }
+        cells[p][i] = to;
+      }
+      arrived[p] = block_of(cells[p]) != before;
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const Block block_a = block_of(cells[a]), block_b = block_of(cells[b]);
+      if (block_a != block_b) return block_a < block_b;
+      if (cells[a] != cells[b]) return cells[a] < cells[b];
+      return !arrived[a] && arrived[b];
+    });
+    return held;
+  }
+};
+
+void expect_agreement(SparseBlocks& blocks, const BruteForce& truth, int round) {
+  ASSERT_EQ(blocks.sorted_order(), truth.order) << "round " << round;
+  std::map<Block, std::uint32_t> slots;
+  Block before{};
+  bool first = true;
+  std::size_t listed = 0;
+  for (const auto slot : blocks.occupied()) {
+    const BlockView v = blocks.view(slot);
+    Block origin{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(truth.dimension); ++a) origin[a] = v.origin[a] / 4;
+    ASSERT_TRUE(first || before < origin) << "blocks come in ascending order";
+    before = origin;
+    first = false;
+    slots[origin] = slot;
+    const int count = power(4, truth.dimension);
+    ASSERT_GT(v.start[count], 0u) << "only blocks with particles are occupied";
+    for (int c = 0; c < count; ++c)
+      for (std::uint32_t i = v.start[c]; i < v.start[c + 1]; ++i) {
+        const CellIndex cell = truth.cells[v.list[i]];
+        const CellIndex inside = truth.dimension == 3 ? CellIndex{c / 16, c / 4 % 4, c % 4} : CellIndex{c / 4, c % 4, 0};
+        for (std::size_t a = 0; a < 3; ++a) ASSERT_EQ(4 * origin[a] + inside[a], cell[a]) << "round " << round;
+        ASSERT_EQ(blocks.cell_of(v.list[i]), cell);
+      }
+    bool contiguous = true;
+    for (std::uint32_t i = 0; i < v.start[count]; ++i) contiguous &= v.list[i] == v.list[0] + i;
+    ASSERT_EQ(v.contiguous, contiguous);
+    listed += v.start[count];
+  }
+  ASSERT_EQ(listed, truth.cells.size());
+
+  // Every block's nodes reach into those at +1: they exist, and know who reaches into them.
+  const int neighbours = 1 << truth.dimension;
+  const auto shifted = [&](Block b, int delta, int sign) {
+    for (int a = 0; a < truth.dimension; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      if (delta >> (truth.dimension - 1 - a) & 1) b[i] += sign;
+      const AxisBounds& bound = truth.bounds[i];
+      if (!bound.periodic) continue;
+      const int period = (bound.upper_cell - bound.lower_cell) / 4, from = floor_quarter(bound.lower_cell);
+      b[i] = from + ((b[i] - from) % period + period) % period;
+    }
+    return b;
+  };
+  std::map<std::uint32_t, Block> reached;
+  for (const auto& [block, slot] : slots)
+    for (int delta = 0; delta < neighbours; ++delta) {
+      const std::uint32_t to = blocks.view(slot).plus[delta];
+      ASSERT_LT(to, blocks.slot_count());
+      const Block there = shifted(block, delta, 1);
+      if (slots.count(there)) {
+        ASSERT_EQ(to, slots[there]) << "round " << round;
+      }
+      const auto known = reached.emplace(to, there).first;
+      ASSERT_EQ(known->second, there) << "two blocks share a slot";
+    }
+  for (const auto& [slot, block] : reached)
+    for (int delta = 0; delta < neighbours; ++delta) {
+      const auto from = slots.find(shifted(block, delta, -1));
+      ASSERT_EQ(blocks.node_view(slot).minus[delta], from == slots.end() ? no_slot : from->second) << "round " << round;
+    }
+}
+
+void wander(int dimension, const std::array<AxisBounds, 3>& bounds, const std::vector<CellIndex>& start, int rounds,
+            double liveliness, std::uint64_t seed) {
+  Random random(seed);
+  SparseBlocks blocks(dimension, bounds);
+  blocks.build(start);
+  BruteForce truth{dimension, bounds, start, {}};
+  truth.order.resize(start.size());
+  for (std::uint32_t p = 0; p < start.size(); ++p) truth.order[p] = p;
+  truth.move(std::vector<std::array<int, 3>>(start.size()));
+  expect_agreement(blocks, truth, -1);
+  std::size_t held_in_all = 0;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<std::array<int, 3>> shifts(start.size());
+    for (auto& shift : shifts)
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        if (random.chance(liveliness)) shift[a] = random.chance(0.5) ? 1 : -1;
+    for (const auto slot : blocks.occupied()) {
+      const BlockView v = blocks.view(slot);
+      *v.sums = {};
+      const int count = power(4, dimension);
+      for (std::uint32_t i = 0; i < v.start[count]; ++i) {
+        const auto& shift = shifts[v.list[i]];
+        if (shift == std::array<int, 3>{}) continue;
+        Mover mover{v.list[i], {}};
+        for (std::size_t a = 0; a < 3; ++a) mover.shift[a] = static_cast<std::int8_t>(shift[a]);
+        v.movers[v.sums->movers++] = mover;
+      }
+    }
+    std::vector<SparseBlocks::Held> held;
+    blocks.relocate(held, 1 + round % 3);
+    std::set<std::pair<std::uint32_t, int>> reported;
+    for (const auto& h : held) {
+      reported.insert({h.particle, h.axis});
+      EXPECT_EQ(h.upper, shifts[h.particle][static_cast<std::size_t>(h.axis)] > 0);
+    }
+    ASSERT_EQ(reported, truth.move(shifts)) << "round " << round;
+    held_in_all += reported.size();
+    expect_agreement(blocks, truth, round);
+    if (testing::Test::HasFatalFailure()) return;
+    if (round % 7 == 6) {
+      // Rearranged in memory, particle numbers follow the order.
+      std::vector<CellIndex> cells;
+      for (const auto p : truth.order) cells.push_back(truth.cells[p]);
+      blocks.particles_rearranged();
+      truth.cells = cells;
+      for (std::uint32_t p = 0; p < cells.size(); ++p) truth.order[p] = p;
+      EXPECT_EQ(blocks.disorder(), 0.0);
+      expect_agreement(blocks, truth, round);
+    }
+  }
+  const bool walled = bounds[0].lower != PlaneWall::none || bounds[1].lower != PlaneWall::none;
+  EXPECT_EQ(held_in_all > 0, walled);
+}
+
+std::vector<CellIndex> cloud(int dimension, int count, int lowest, int highest, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<CellIndex> cells(static_cast<std::size_t>(count));
+  for (auto& c : cells)
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) c[a] = random.integer(lowest, highest);
+  return cells;
+}
+
+}  // namespace
+
+TEST(SparseBlocks, RelocationAgreesWithBruteForceInOpenSpace) {
+  wander(2, {}, cloud(2, 400, -9, 9, 1), 60, 0.3, 2);
+  wander(3, {}, cloud(3, 800, -6, 6, 3), 40, 0.3, 4);
+}
+
+TEST(SparseBlocks, RelocationAgreesWithBruteForceBetweenWalls) {
+  std::array<AxisBounds, 3> bounds{};
+  bounds[0] = {PlaneWall::slip, PlaneWall::slip, 0, 7, false};
+  bounds[1] = {PlaneWall::no_slip, PlaneWall::none, 0, 0, false};
+  wander(2, bounds, cloud(2, 300, 0, 6, 5), 60, 0.5, 6);
+  bounds[2] = {PlaneWall::no_slip, PlaneWall::no_slip, -3, 7, false};
+  wander(3, bounds, cloud(3, 500, 0, 6, 7), 40, 0.5, 8);
+}
+
+TEST(SparseBlocks, RelocationAgreesWithBruteForceRoundAPeriodicAxis) {
+  std::array<AxisBounds, 3> bounds{};
+  bounds[0] = {PlaneWall::none, PlaneWall::none, 0, 4, true};  // a block that is its own neighbour, as in a duct
+  bounds[1] = {PlaneWall::no_slip, PlaneWall::no_slip, 0, 10, false};
+  wander(2, bounds, cloud(2, 200, 0, 3, 9), 60, 0.4, 10);
+  bounds[0] = {PlaneWall::none, PlaneWall::none, -8, 8, true};
+  wander(2, bounds, cloud(2, 300, 0, 7, 11), 60, 0.4, 12);
+}
+
+TEST(SparseBlocks, WhatStaysKeepsItsOrder) {
+  const std::vector<CellIndex> cells(20, CellIndex{1, 2, 0});
+  SparseBlocks blocks(2, {});
+  blocks.build(cells);
+  std::vector<std::uint32_t> expected(20);
+  for (std::uint32_t i = 0; i < 20; ++i) expected[i] = i;
+  EXPECT_EQ(blocks.sorted_order(), expected);
+  EXPECT_EQ(blocks.fullest_cell(), 20u);
+}
+
+TEST(SparseBlocks, OnlyOccupiedBlocksAndThoseTheirNodesReachExist) {
+  SparseBlocks blocks(3, {});
+  blocks.build({{0, 0, 0}, {400000, -400000, 3}});
+  EXPECT_EQ(blocks.occupied().size(), 2u);
+  EXPECT_EQ(blocks.slot_count(), 16u);
+  EXPECT_LT(blocks.bytes(), 1u << 15);
+}
