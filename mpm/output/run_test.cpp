@@ -1,0 +1,276 @@
+#include "mpm/output/run.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "mpm/output/checkpoint.h"
+#include "mpm/output/test_runs.h"
+
+using namespace flowrest;
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::test;
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+
+/// A hook that stops a run, with a checkpoint, before its step number `steps` + 1.
+std::function<bool()> stop_after(int steps) {
+  return [steps, asked = 0]() mutable { return asked++ == steps; };
+}
+
+/// A hook that ends the run as a power cut would: at once, with no last checkpoint.
+struct PowerCut {};
+std::function<bool()> cut_after(int steps) {
+  return [steps, asked = 0]() mutable -> bool {
+    if (asked++ == steps) throw PowerCut{};
+    return false;
+  };
+}
+
+void expect_same_run(const fs::path& one, const fs::path& other) {
+  for (const char* file : {"history.csv", "profiles.csv", "particles/particles.hdf.series"}) {
+    EXPECT_FALSE(text_of(one / file).empty()) << file;
+    EXPECT_EQ(text_of(one / file), text_of(other / file)) << file;
+  }
+  const auto a = read_checkpoint(one), b = read_checkpoint(other);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->run.time, b->run.time);
+  EXPECT_EQ(a->run.steps, b->run.steps);
+  EXPECT_EQ(a->run.dissipated, b->run.dissipated);
+  EXPECT_EQ(a->run.calm_since, b->run.calm_since);
+  EXPECT_EQ(a->solver.cells, b->solver.cells);
+  EXPECT_EQ(a->solver.arrays, b->solver.arrays);
+  EXPECT_EQ(a->scene, b->scene);
+}
+
+}  // namespace
+
+class MpmRun : public RunTest {};
+
+TEST_F(MpmRun, HistoryHasItsColumnsAndARowEveryInterval) {
+  const auto run = run_and_read(tiny_slump());
+  EXPECT_THAT(run.history.names,
+              ElementsAre("time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm", "volume_m3",
+                          "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J", "elastic_energy_J",
+                          "dissipated_energy_J", "numerical_energy_J", "shear_rate_p99_1_s", "time_step_s"));
+  ASSERT_EQ(run.history.rows(), 7u);
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_NEAR(run.history.at("time_s")[i], 0.05 * static_cast<double>(i), 1e-12);
+  ASSERT_EQ(run.profiles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.profiles[i].time, 0.1 * static_cast<double>(i), 1e-12);
+  EXPECT_EQ(run.status(), runs::Status::end_time);
+  EXPECT_EQ(run.info["solver"], "mpm");
+  EXPECT_GT(run.info["steps"].get<int>(), 100);
+}
+
+TEST_F(MpmRun, ThixotropyAddsItsColumn) {
+  const auto run = run_and_read(tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                                            "thixotropy.initial_flocculation=1.8", "time.end=0.05"}));
+  EXPECT_EQ(run.history.names.back(), "flocculation_mean");
+  EXPECT_NEAR(run.history.at("flocculation_mean")[0], 1.8, 1e-12);
+}
+
+TEST_F(MpmRun, ADuctHasItsOwnGauges) {
+  const auto scene = scenes::load_scene("poiseuille-step-down", {{"mpm.cell=0.02", "time.end=0.04", "mpm.threads=1"}, {}});
+  const auto run = run_and_read(scene);
+  EXPECT_EQ(run.history.names[1], "plug_velocity_m_s");
+  EXPECT_EQ(run.history.names[2], "mean_velocity_m_s");
+  // The middle does not know of the walls before a shear wave (4.1 m/s) has come: until then it falls along the duct.
+  EXPECT_NEAR(run.history.at("plug_velocity_m_s").back(), 2000.0 / 2000.0 * 0.04, 1e-4);
+}
+
+TEST_F(MpmRun, AProfilesVolumeIsTheVolumeOfTheParticles) {
+  for (const std::string dimension : {"axisymmetric", "quarter", "full", "plane"}) {
+    const bool solid = dimension == "quarter" || dimension == "full";
+    const auto run = run_and_read(tiny_slump({"geometry.dimension=" + dimension, "time.end=0.1",
+                                              solid ? "mpm.particles_per_cell=8" : "mpm.particles_per_cell=9"}),
+                                  dimension);
+    const auto& profile = run.profiles.back();
+    double volume = 0.0;
+    for (std::size_t i = 0; i < profile.value.size(); ++i) {
+      const double inner = profile.coordinate[i] - 0.01, outer = profile.coordinate[i] + 0.01;
+      volume += profile.value[i] *
+                (dimension == "plane" ? 2.0 * (outer - inner) : std::numbers::pi * (outer * outer - inner * inner));
+    }
+    const double expected = run.history.at("volume_m3").back();
+    EXPECT_NEAR(volume, expected, 1e-12 * expected) << dimension;
+    const double cone = dimension == "plane" ? 0.045 : 5.497787143782138e-3;
+    EXPECT_NEAR(run.history.at("volume_at_rest_m3").back(), cone, 1e-11 * cone) << dimension;
+  }
+}
+
+TEST_F(MpmRun, EveryFigureOfTheWholeBodyIsTheSameForAQuarterAndTheFullCone) {
+  std::vector<runs::Run> both;
+  for (const std::string dimension : {"quarter", "full"})
+    both.push_back(run_and_read(
+        tiny_slump({"geometry.dimension=" + dimension, "mpm.particles_per_cell=8", "time.end=0.2"}), dimension));
+  for (const auto& name : both[0].history.names) {
+    const double a = both[0].history.at(name).back(), b = both[1].history.at(name).back();
+    EXPECT_NEAR(a, b, 1e-7 * std::abs(a) + (name == "numerical_energy_J" ? 1e-6 : 0.0)) << name;
+  }
+}
+
+TEST_F(MpmRun, TheSameSceneGivesTheSameBytes) {
+  run(tiny_slump(), options("a"));
+  run(tiny_slump(), options("b"));
+  expect_same_run(folder / "a", folder / "b");
+}
+
+TEST_F(MpmRun, StepsLandOnTheRowsOfTheHistoryAndKeepTheCourantNumber) {
+  const auto run = run_and_read(tiny_slump({"mpm.cfl=0.5"}));
+  const auto scene = tiny_slump();
+  const double largest = 0.5 * 0.02 / scene.material.longitudinal_speed();
+  for (std::size_t i = 1; i < run.history.rows(); ++i) EXPECT_LE(run.history.at("time_step_s")[i], largest);
+}
+
+TEST_F(MpmRun, AnEndTimeBelowOneStepDoesOneStep) {
+  const auto run = run_and_read(tiny_slump({"time.end=1e-7"}));
+  EXPECT_EQ(run.info["steps"], 1);
+  EXPECT_DOUBLE_EQ(run.history.at("time_s").back(), 1e-7);
+}
+
+class ResumedRun : public RunTest, public testing::WithParamInterface<std::tuple<std::string, std::string, std::string>> {
+ protected:
+  std::vector<std::string> settings() const {
+    const auto& [scheme, model, precision] = GetParam();
+    std::vector<std::string> set = {"mpm.scheme=" + scheme, "material.model=" + model, "mpm.precision=" + precision};
+    if (model != "elasto-viscoplastic") return set;
+    return with(set, {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                      "thixotropy.initial_flocculation=1.8"});
+  }
+};
+
+TEST_P(ResumedRun, GoesOnBitForBitFromAnyStep) {
+  const auto scene = tiny_slump(settings());
+  run(scene, options("whole"));
+  for (const int step : {17, 83}) {
+    const std::string name = "stopped after " + std::to_string(step);
+    auto stopped = options(name);
+    stopped.interrupted = stop_after(step);
+    EXPECT_EQ(run(scene, stopped).status, runs::Status::interrupted);
+    EXPECT_EQ(runs::read_run(folder / name).status(), runs::Status::interrupted);
+    EXPECT_EQ(read_checkpoint(folder / name)->run.steps, step);
+    // And once more on the way.
+    stopped.interrupted = stop_after(31);
+    EXPECT_EQ(resume(stopped).status, runs::Status::interrupted);
+    EXPECT_EQ(resume(options(name)).status, runs::Status::end_time);
+    expect_same_run(folder / "whole", folder / name);
+  }
+}
+
+TEST_P(ResumedRun, GoesOnBitForBitFromTheLastCheckpointAfterAPowerCut) {
+  const auto scene = tiny_slump(settings());
+  run(scene, options("whole"));
+  auto cut = options("cut");
+  cut.interrupted = cut_after(110);  // past the checkpoint at 0.1 s and rows after it
+  EXPECT_THROW(run(scene, cut), PowerCut);
+  ASSERT_TRUE(read_checkpoint(folder / "cut"));
+  EXPECT_LT(read_checkpoint(folder / "cut")->run.steps, 110.0);
+  EXPECT_EQ(resume(options("cut")).status, runs::Status::end_time);
+  expect_same_run(folder / "whole", folder / "cut");
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryKind, ResumedRun,
+                         testing::Combine(testing::Values("quadratic-apic", "linear-flip"),
+                                          testing::Values("elasto-viscoplastic", "papanastasiou"),
+                                          testing::Values("double", "float")),
+                         [](const auto& tested) {
+                           std::string name = std::get<0>(tested.param) + "_" + std::get<1>(tested.param) + "_" +
+                                              std::get<2>(tested.param);
+                           for (char& c : name) c = c == '-' ? '_' : c;
+                           return name;
+                         });
+
+TEST_F(MpmRun, ResumedBeforeItsFirstCheckpointItStartsOver) {
+  run(tiny_slump(), options("whole"));
+  auto cut = options("cut");
+  cut.interrupted = cut_after(3);
+  EXPECT_THROW(run(tiny_slump(), cut), PowerCut);
+  EXPECT_FALSE(read_checkpoint(folder / "cut"));
+  EXPECT_EQ(resume(options("cut")).status, runs::Status::end_time);
+  expect_same_run(folder / "whole", folder / "cut");
+}
+
+TEST_F(MpmRun, AFinishedRunResumedStaysAsItIs) {
+  run(tiny_slump(), options("run"));
+  const std::string history = text_of(folder / "run" / "history.csv"), profiles = text_of(folder / "run" / "profiles.csv");
+  EXPECT_EQ(resume(options("run")).status, runs::Status::end_time);
+  EXPECT_EQ(text_of(folder / "run" / "history.csv"), history);
+  EXPECT_EQ(text_of(folder / "run" / "profiles.csv"), profiles);
+}
+
+TEST_F(MpmRun, NothingToResumeIsAnError) {
+  fs::create_directories(folder / "empty");
+  EXPECT_THROW(resume(options("empty")), runs::RunError);
+  EXPECT_THROW(resume(options("missing")), runs::RunError);
+}
+
+TEST_F(MpmRun, ADamagedCheckpointIsAnErrorThatNamesIt) {
+  run(tiny_slump(), options("run"));
+  const fs::path file = folder / "run" / "checkpoint.h5";
+  const std::string whole = text_of(file);
+  const auto refusal = [&]() -> std::string {
+    try {
+      resume(options("run"));
+    } catch (const runs::RunError& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  };
+  for (const std::size_t kept : {std::size_t{0}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, kept);
+    EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5")) << "cut to " << kept << " of " << whole.size() << " bytes";
+  }
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << std::string(whole.size(), '?');
+  EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5"));
+  // History and profiles are as they were.
+  EXPECT_EQ(runs::read_run(folder / "run").history.rows(), 7u);
+}
+
+TEST_F(MpmRun, ACheckpointReadsBackAsItWasWritten) {
+  Checkpoint written;
+  written.run.time = 1.0 / 3.0;
+  written.run.steps = 12345.0;
+  written.run.calm_since = -1.0;
+  written.run.checkpoints = 7.0;
+  written.scene = "title = \"ä\"\n";
+  written.solver.cells = {{1, -2, 3}, {-400000, 5, 6}};
+  written.solver.arrays = {{0.1, 1e-300}, {-0.0, 1e300}};
+  written.solver.tile_capacity = 128;
+  write_checkpoint(folder, written);
+  const auto read = read_checkpoint(folder);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->run.time, written.run.time);
+  EXPECT_EQ(read->run.steps, written.run.steps);
+  EXPECT_EQ(read->run.calm_since, written.run.calm_since);
+  EXPECT_EQ(read->run.checkpoints, written.run.checkpoints);
+  EXPECT_EQ(read->scene, written.scene);
+  EXPECT_EQ(read->solver.cells, written.solver.cells);
+  EXPECT_EQ(read->solver.arrays, written.solver.arrays);
+  EXPECT_TRUE(std::signbit(read->solver.arrays[1][0]));
+  EXPECT_EQ(read->solver.tile_capacity, 128);
+}
+
+TEST_F(MpmRun, MaterialThatReachesTheDomainsEdgeFailsAndKeepsItsData) {
+  const auto scene = tiny_slump({"geometry.domain_radius=0.12", "time.end=2.0"});
+  try {
+    run(scene, options("run"));
+    FAIL() << "nothing was thrown";
+  } catch (const runs::NumericsError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("geometry.domain_radius"));
+  }
+  const auto left = runs::read_run(folder / "run");
+  EXPECT_EQ(left.status(), runs::Status::failed);
+  EXPECT_THAT(left.info["reason"].get<std::string>(), HasSubstr("geometry.domain_radius"));
+  EXPECT_THAT(left.info["verdict"].get<std::string>(), HasSubstr("noisy"));
+  EXPECT_GT(left.history.rows(), 1u);
+  EXPECT_GE(left.profiles.size(), 1u);
+  EXPECT_LT(left.history.at("time_s").back(), 1.0);
+}
+
+TEST_F(MpmRun, AnUnstableStepFailsWithAReason) {
+  const auto scene = tiny_slump({"mpm.time_step=0.008", "mpm.allow_unstable_step=true", "time.end=1.0"});
+  EXPECT_THROW(run(scene, options("run")), runs::NumericsError);
+  EXPECT_EQ(runs::read_run(folder / "run").status(), runs::Status::failed);
+}
