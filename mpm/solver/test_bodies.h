@@ -103,8 +103,9 @@ struct Open {
   double cell;
   bool affine_stored;
 
-  Open(Solver& solver, const SolverSettings& s)
-      : state(solver.state()), dimension(s.dimension), cell(s.cell), affine_stored(s.transfer == Transfer::quadratic_apic) {}
+  Open(SolverState of, const SolverSettings& s)
+      : state(std::move(of)), dimension(s.dimension), cell(s.cell), affine_stored(s.transfer == Transfer::quadratic_apic) {}
+  Open(Solver& solver, const SolverSettings& s) : Open(solver.state(), s) {}
 
   std::size_t size() const { return state.cells.size(); }
   std::vector<double>& array(int index) { return state.arrays.at(static_cast<std::size_t>(index)); }

@@ -149,19 +149,20 @@ FLOWREST_INLINE int cell_base(int cell) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Particles to grid
 
-/// One particle's contribution to a node record: weight * value + sum_a (weight * offset_a * affine_a + slope_a * stress_a).
-template <class T, int Dim, bool Affine, bool Stress>
+/// One particle's contribution to the node records around it, the product of the axes' weights times
+/// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the plain weight (its
+/// offset times the affine part, its slope times the stress).
+template <class T, int Dim, class Shape, bool Terms>
 struct Source {
   T value[4];
-  T affine[Affine ? Dim : 1][4];
-  T stress[Stress ? Dim : 1][4];
+  T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][4];
 };
 
 /// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The accumulators of a slab
-/// of nodes stay in registers over the particles. Weights are built as w0 w1 w2 with the axes' terms factored.
-template <class T, int Dim, class Shape, bool Affine, bool Stress>
-void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Affine, Stress>* source, const T* const* position,
-             const Weights<T, Dim, Shape>& w, int first, int count) {
+/// of nodes stay in registers over the particles.
+template <class T, int Dim, class Shape, bool Terms>
+void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>* source, const Weights<T, Dim, Shape>& w,
+             int first, int count) {
   constexpr int nodes = Shape::nodes;
   constexpr int rows = Dim == 3 ? nodes : 1;
   constexpr int last = Dim - 1;
@@ -174,27 +175,7 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Affine, Stress
       for (int k = 0; k < nodes; ++k) sum[j][k] = zero;
     for (int q = first; q < first + count; ++q) {
       const auto& s = source[q];
-      // Contribution of axis a's node n beyond weight * value: terms that carry that axis' offset or slope.
-      const auto axis_term = [&](int a, int n) FLOWREST_LAMBDA_INLINE {
-        Record<T> term = zero;
-        if constexpr (Affine) {
-          if constexpr (Shape::nodes == 3) {
-            const T offset = Shape::offset(n, position[a][q]);
-            term += (w.weight[a][n][q] * offset) * record_at(s.affine[a]);
-          }
-        }
-        if constexpr (Stress) term += w.slope[a][n][q] * record_at(s.stress[a]);
-        return term;
-      };
-      constexpr bool terms = Affine || Stress;
       const T wi = w.weight[0][i][q];
-      Record<T> along_last[nodes];
-      if constexpr (terms) {
-#pragma GCC unroll 9
-        for (int k = 0; k < nodes; ++k) along_last[k] = axis_term(last, k);
-      }
-      Record<T> first_term = zero;
-      if constexpr (terms) first_term = axis_term(0, i);
 #pragma GCC unroll 9
       for (int j = 0; j < rows; ++j) {
         T wij = wi;
@@ -203,14 +184,15 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Affine, Stress
           const T wj = w.weight[1][j][q];
           wij = wi * wj;
           plane = wij * record_at(s.value);
-          if constexpr (terms) plane += wj * first_term + wi * axis_term(1, j);
+          if constexpr (Terms) plane += wj * record_at(s.term[0][i]) + wi * record_at(s.term[1][j]);
         } else {
-          plane = wij * record_at(s.value) + first_term;
+          plane = wij * record_at(s.value);
+          if constexpr (Terms) plane += record_at(s.term[0][i]);
         }
 #pragma GCC unroll 9
         for (int k = 0; k < nodes; ++k) {
           sum[j][k] += w.weight[last][k][q] * plane;
-          if constexpr (terms) sum[j][k] += wij * along_last[k];
+          if constexpr (Terms) sum[j][k] += wij * record_at(s.term[last][k]);
         }
       }
     }
@@ -289,18 +271,16 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
                        const T* /*nodes*/, const Workspace<T>& workspace) {
   constexpr int records = Flip ? 2 : 1;
   constexpr int arena_values = nodes_per_arena<Dim> * records * record;
-  using Momentum = Source<T, Dim, !Flip, !Flip>;  // FLIP: (m, m v) alone
-  using Force = Source<T, Dim, false, true>;
+  using Momentum = Source<T, Dim, Shape, !Flip>;  // FLIP: (m, m v) alone
+  using Force = Source<T, Dim, Shape, true>;
   T* arena = arenas + static_cast<std::size_t>(block.slot) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     const int count = tile.count;
-    T *x[Dim], *v[Dim], *s[Deviator<T, Dim>::components];
+    T* x[Dim];
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
-    for (int a = 0; a < Dim; ++a) v[a] = tile.open(particles.velocity[a]);
-    for (int c = 0; c < Deviator<T, Dim>::components; ++c) s[c] = tile.open(particles.deviator[c]);
     const T* mass = tile.open(particles.mass);
     const T* ratio = tile.open(particles.volume_ratio);
     const T* raw_pressure = tile.open(particles.pressure);
@@ -328,63 +308,56 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       for (int q = 0; q < count; ++q) per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
     }
 
-    const T* affine[Dim * Dim] = {};
-    if constexpr (!Flip)
-      for (int c = 0; c < Dim * Dim; ++c) affine[c] = tile.open(particles.affine[c]);
-
-    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the workspace's rest.
+    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the workspace's
+    // rest, and what only they need is read from the particles' arrays straight away.
     constexpr int source_values = static_cast<int>((sizeof(Momentum) + (Flip ? sizeof(Force) : 0)) / sizeof(T));
     T* source_memory = tile.memory + tile.capacity * tile.used;
     Momentum* momentum = reinterpret_cast<Momentum*>(source_memory);
     Force* force = reinterpret_cast<Force*>(source_memory + static_cast<int>(sizeof(Momentum) / sizeof(T)) * tile.capacity);
-    static_assert(source_values + 50 <= workspace_arrays);
+    static_assert(source_values + 30 <= workspace_arrays);
     const T dt = step.step, impulse_per_cell = dt / step.cell;
+    const std::uint32_t* list = block.list + tile.first;
     for (int q = 0; q < count; ++q) {
+      const std::uint32_t id = list[q];
       Deviator<T, Dim> dev;
       if constexpr (Dim == 2) {
-        dev = {s[0][q], s[1][q], s[2][q]};
+        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id]};
       } else {
-        dev = {s[0][q], s[1][q], s[2][q], s[3][q], s[4][q]};
+        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id], particles.deviator[3][id],
+               particles.deviator[4][id]};
       }
       const T p = centroid ? T(0) : pressure[q];
       const T m = mass[q], scale = -volume[q] * impulse_per_cell;
-      Momentum& out = momentum[q];
-      out.value[0] = m;
-      T(*stress)[4];
-      T* force_value;
-      if constexpr (Flip) {
-        for (int c = 0; c < Dim; ++c) out.value[1 + c] = m * v[c][q];
-        stress = force[q].stress;
-        force_value = force[q].value;
-        force_value[0] = T(0);
-        for (int c = 0; c < Dim; ++c) force_value[1 + c] = m * dt * step.acceleration[c];
-      } else {
-        for (int c = 0; c < Dim; ++c) out.value[1 + c] = m * (v[c][q] + dt * step.acceleration[c]);
-        stress = out.stress;
-        force_value = out.value;
-      }
-      if constexpr (Axisymmetric) force_value[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
-      for (int a = 0; a < Dim; ++a) stress[a][0] = T(0);
-      stress[0][1] = scale * (dev.xx - p);
-      stress[0][2] = stress[1][1] = scale * dev.xy;
-      stress[1][2] = scale * (dev.yy - p);
+      const Record<T> push = {T(0), m * dt * step.acceleration[0], m * dt * step.acceleration[1],
+                              Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
+      Record<T> moving = {m, m * particles.velocity[0][id], m * particles.velocity[1][id],
+                          Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};
+      Record<T> forcing = push;
+      if constexpr (Axisymmetric) forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+      Record<T> stress[Dim];
       if constexpr (Dim == 3) {
-        stress[0][3] = stress[2][1] = scale * dev.xz;
-        stress[1][3] = stress[2][2] = scale * dev.yz;
-        stress[2][3] = scale * (dev.zz() - p);
+        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, scale * dev.xz};
+        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), scale * dev.yz};
+        stress[2] = Record<T>{T(0), scale * dev.xz, scale * dev.yz, scale * (dev.zz() - p)};
       } else {
-        out.value[3] = T(0);
-        force_value[3] = T(0);
-        stress[0][3] = stress[1][3] = T(0);
+        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, T(0)};
+        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), T(0)};
       }
-    }
-    if constexpr (!Flip) {
-      for (int q = 0; q < count; ++q)
-        for (int j = 0; j < Dim; ++j) {
-          momentum[q].affine[j][0] = T(0);
-          for (int i = 0; i < Dim; ++i) momentum[q].affine[j][1 + i] = mass[q] * affine[i * Dim + j][q];
-          if constexpr (Dim == 2) momentum[q].affine[j][3] = T(0);
+      if constexpr (Flip) {
+        record_at(momentum[q].value) = moving;
+        record_at(force[q].value) = forcing;
+        for (int a = 0; a < Dim; ++a)
+          for (int n = 0; n < Shape::nodes; ++n) record_at(force[q].term[a][n]) = weights.slope[a][n][q] * stress[a];
+      } else {
+        record_at(momentum[q].value) = moving + forcing;
+        for (int a = 0; a < Dim; ++a) {
+          const Record<T> affine = {T(0), m * particles.affine[a][id], m * particles.affine[Dim + a][id],
+                                    Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
+          for (int n = 0; n < Shape::nodes; ++n)
+            record_at(momentum[q].term[a][n]) =
+                (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * affine + weights.slope[a][n][q] * stress[a];
         }
+      }
     }
 
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
@@ -392,8 +365,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       if (n == 0) continue;
       const int first = tile.cell_first(cell);
       T* base = arena + cell_base<T, Dim>(cell) * records * record;
-      scatter<T, Dim, Shape, !Flip, !Flip>(base, records * record, momentum, x, weights, first, n);
-      if constexpr (Flip) scatter<T, Dim, Shape, false, true>(base + record, records * record, force, x, weights, first, n);
+      scatter<T, Dim, Shape, !Flip>(base, records * record, momentum, weights, first, n);
+      if constexpr (Flip) scatter<T, Dim, Shape, true>(base + record, records * record, force, weights, first, n);
       if (centroid) {
         // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
         T thrust = T(0);
@@ -813,7 +786,7 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
 
   constexpr int components = Deviator<T, Dim>::components;
   for (int c = 0; c < components; ++c) s.deviator[c] = tile.open(particles.deviator[c]);
-  s.pressure = tile.open(particles.pressure);
+  s.pressure = tile.fresh();
   s.rate = tile.open(particles.rate);
   const bool thixotropic = particles.lambda != nullptr;
   s.lambda = thixotropic ? tile.open(particles.lambda) : nullptr;
@@ -932,7 +905,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
   load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
   T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * values;
   for (int i = 0; i < nodes_per_arena<Dim> * values; ++i) remapped[i] = T(0);
-  using Momentum = Source<T, Dim, false, false>;
+  using Momentum = Source<T, Dim, Linear, false>;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *v[Dim];
@@ -965,8 +938,8 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        scatter<T, Dim, Linear, false, false>(remapped + cell_base<T, Dim>(cell) * values, values, momentum, x, weights,
-                                              tile.cell_first(cell), tile.cell_count(cell));
+        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * values, values, momentum, weights,
+                                       tile.cell_first(cell), tile.cell_count(cell));
   }
 }
 

@@ -1,0 +1,181 @@
+// Plane Poiseuille flow (Yu et al. 2026, section 3.3) against what is known exactly. Every bound is stated beside what was
+// measured, on AVX-512 in double precision.
+#include <cmath>
+
+#include "mpm/output/checkpoint.h"
+#include "mpm/output/test_runs.h"
+#include "mpm/solver/settings.h"
+#include "mpm/solver/test_bodies.h"
+
+using namespace flowrest;
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::test;
+
+namespace {
+
+constexpr double height = 0.5, density = 2000.0, viscosity = 30.0, force = 2000.0;
+
+/// Steady velocity of a Bingham fluid, Yu et al. 2026, Eqs. 48 to 50. m/s
+double exact_velocity(double y, double yield, double plastic_viscosity = viscosity) {
+  const double plug = yield / force, from_middle = std::max(std::abs(y - 0.5 * height), plug);
+  return (force * (0.25 * height * height - from_middle * from_middle) - 2.0 * yield * (0.5 * height - from_middle)) /
+         (2.0 * plastic_viscosity);
+}
+
+/// Relative L2 error of a profile.
+template <class Exact>
+double l2(const runs::Profile& profile, Exact exact) {
+  double error = 0.0, scale = 0.0;
+  for (std::size_t i = 0; i < profile.value.size(); ++i) {
+    const double u = exact(profile.coordinate[i]);
+    error += (profile.value[i] - u) * (profile.value[i] - u);
+    scale += u * u;
+  }
+  return std::sqrt(error / scale);
+}
+
+scenes::Scene duct(const std::vector<std::string>& more) {
+  return scenes::load_scene("poiseuille-step-down", {with({"mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
+}
+
+std::string setting(const std::string& key, double value) { return key + "=" + std::to_string(value); }
+
+/// Shear rate at a stress of tau = eta g + tau0 (1 - exp(-m g)), by bisection. 1/s
+double papanastasiou_rate(double stress, double yield, double m) {
+  double low = 0.0, high = stress / viscosity;
+  for (int i = 0; i < 200; ++i) {
+    const double g = 0.5 * (low + high);
+    (viscosity * g - yield * std::expm1(-m * g) < stress ? low : high) = g;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Steady velocity of the middle under a force: from dv/dy = g(tau), tau = F y' (y' from the middle), so that
+/// v = (1/F) int_0^{F H/2} g dtau; Simpson's rule. m/s
+double papanastasiou_creep(double driving, double yield, double m) {
+  const int intervals = 2000;
+  const double wall = 0.5 * driving * height, h = wall / intervals;
+  double sum = 0.0;
+  for (int i = 0; i <= intervals; ++i)
+    sum += (i == 0 || i == intervals ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * papanastasiou_rate(i * h, yield, m) * h / 3.0;
+  return sum / driving;
+}
+
+/// When a Bingham fluid between the plates stops, its force stepped down at zero from 2000 N/m3: the time at which its
+/// plug's velocity falls below `slow`, by finite differences over half the height, velocities and stresses staggered. The
+/// plug is held together by a stiff elasticity (twenty times the scene's), each step's stress relaxed to the flow law.
+double stopping_time(double driving, double yield, double slow) {
+  const int cells = 250;
+  const double dy = 0.5 * height / cells, modulus = 20.0 * 34138.0;
+  const double dt = 0.5 * dy / std::sqrt(modulus / density);
+  std::vector<double> velocity(cells), stress(cells + 1);  // y from the wall: velocity at centres, stress at faces
+  for (int i = 0; i < cells; ++i) velocity[static_cast<std::size_t>(i)] = exact_velocity((i + 0.5) * dy, yield);
+  for (int i = 0; i <= cells; ++i) stress[static_cast<std::size_t>(i)] = force * (0.5 * height - i * dy);
+  double time = 0.0;
+  while (velocity.back() > slow && time < 20.0) {
+    for (std::size_t i = 0; i < velocity.size(); ++i)
+      velocity[i] += dt / density * (driving + (stress[i + 1] - stress[i]) / dy);
+    for (std::size_t i = 0; i + 1 < stress.size(); ++i) {
+      const double gradient = i == 0 ? velocity[0] / (0.5 * dy) : (velocity[i] - velocity[i - 1]) / dy;
+      const double trial = stress[i] + modulus * dt * gradient;
+      const double rate = std::max(std::abs(trial) - yield, 0.0) / (viscosity + modulus * dt);
+      stress[i] = trial - std::copysign(modulus * dt * rate, trial);
+    }
+    time += dt;
+  }
+  return time;
+}
+
+}  // namespace
+
+class Duct : public RunTest {};
+
+TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
+  for (const auto& [yield, measured] : {std::pair{10.0, 2.03e-3}, std::pair{200.0, 2.74e-3}}) {
+    const auto scene = duct({setting("material.yield_stress", yield), "time.end=12", "output.checkpoint_interval=12"});
+    const std::string name = "yield " + std::to_string(yield);
+    const auto run = run_and_read(scene, name);
+    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    std::printf("    yield %g Pa: L2 %.3g (measured %.3g)\n", yield, error, measured);
+    EXPECT_LE(error, 3e-3) << name;
+    EXPECT_GT(error, 1e-4) << name << ": too good to be what it was";
+    // The plug reaches yield / F from the middle; a cell either side of its edge shares its grid's nodes.
+    Open open(read_checkpoint(folder / name)->solver, settings_of(scene));
+    double fastest = 0.0;
+    int in_plug = 0;
+    for (std::size_t p = 0; p < open.size(); ++p) {
+      if (std::abs(open.position(1, p) - 0.5 * height) > yield / force - 2.0 * 0.01) continue;
+      fastest = std::max(fastest, open.rate()[p]);
+      ++in_plug;
+    }
+    if (yield < 100.0) continue;  // 5 mm either side of the middle: narrower than a cell
+    EXPECT_GT(in_plug, 1000);
+    EXPECT_EQ(fastest, 0.0) << "plastic shear rate in the plug, 1/s; at the wall it is " << (force * 0.25 - yield) / viscosity;
+  }
+}
+
+TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
+  const auto scene = duct({"material.yield_stress=200", "time.end=12", "mpm.scheme=linear-flip", "mpm.cfl=0.3",
+                           "mpm.flip_relaxation_time=1e6"});
+  const double error = l2(run_and_read(scene).profiles.back(), [](double y) { return exact_velocity(y, 200.0); });
+  std::printf("    yield 200 Pa: L2 %.3g\n", error);
+  EXPECT_LE(error, 1e-3);
+}
+
+TEST_F(Duct, NewtonianFlowConvergesWithTheSquareOfTheCell) {
+  // At 300 Pa s the flow is steady within a second.
+  const auto error = [&](const std::string& cell) {
+    const auto scene = duct({"material.model=newtonian", "material.plastic_viscosity=300", "time.end=3", "mpm.cell=" + cell});
+    return l2(run_and_read(scene, cell).profiles.back(), [](double y) { return exact_velocity(y, 0.0, 300.0); });
+  };
+  const double coarse = error("0.05"), fine = error("0.025"), finest = error("0.0125");
+  std::printf("    L2 %.3g, %.3g, %.3g at 50, 25, 12.5 mm: order %.2f, %.2f\n", coarse, fine, finest,
+              std::log2(coarse / fine), std::log2(fine / finest));
+  EXPECT_GE(std::log2(coarse / fine), 1.8) << coarse << " and " << fine;
+  EXPECT_GE(std::log2(fine / finest), 1.8) << fine << " and " << finest;
+}
+
+TEST_F(Duct, SteppedDownBelowYieldTheExactMaterialStopsWhenTheFiniteDifferencesSay) {
+  const double slow = 2e-3;
+  const auto run = run_and_read(duct({"time.end=18.5"}));
+  const auto& time = run.history.at("time_s");
+  const auto& plug = run.history.at("plug_velocity_m_s");
+  double stopped = 0.0;
+  for (std::size_t i = 1; i < time.size() && stopped == 0.0; ++i)
+    if (time[i] > 12.0 && plug[i] < slow)
+      stopped = time[i - 1] + (time[i] - time[i - 1]) * (plug[i - 1] - slow) / (plug[i - 1] - plug[i]) - 12.0;
+  const double expected = stopping_time(360.0, 100.0, slow);
+  std::printf("    stops after %.4g s, finite differences %.4g s\n", stopped, expected);
+  EXPECT_LT(expected, 5.87) << "the bound for all Bingham flows";
+  EXPECT_NEAR(stopped, expected, 0.03 * expected);
+  // It stays where it is but for its elastic swing, which has no mean.
+  double mean = 0.0;
+  int rows = 0;
+  for (std::size_t i = 0; i < time.size(); ++i)
+    if (time[i] > 17.5) {
+      mean += plug[i];
+      ++rows;
+    }
+  EXPECT_LT(std::abs(mean / rows), 2e-3) << "m/s, of 1.33 m/s before";
+}
+
+TEST_F(Duct, BelowYieldARegularisedFluidCreepsAsFastAsItsLawSays) {
+  for (const double m : {10.0, 100.0}) {
+    const auto scene = duct({"material.model=papanastasiou", setting("material.regularisation_time", m),
+                             "forces.body_force=[[0.0, 360.0]]", "time.end=2"});
+    const auto run = run_and_read(scene, std::to_string(m));
+    const double expected = papanastasiou_creep(360.0, 100.0, m), creep = run.history.at("plug_velocity_m_s").back();
+    std::printf("    m = %g s: creeps at %.4g m/s, its law says %.4g\n", m, creep, expected);
+    EXPECT_NEAR(creep, expected, 0.05 * expected) << "m = " << m;
+  }
+  EXPECT_NEAR(papanastasiou_creep(360.0, 100.0, 10.0), 1.69e-2, 1e-4);
+  EXPECT_NEAR(papanastasiou_creep(360.0, 100.0, 100.0), 1.84e-3, 1e-5);
+}
+
+TEST_F(Duct, FlocculationAtRestGrowsExactlyWithTime) {
+  const auto scene = duct({"forces.body_force=[[0.0, 100.0]]", "time.end=1", "mpm.cell=0.05", "thixotropy.flocculation_rate=0.39",
+                           "thixotropy.deflocculation_coefficient=0.15", "thixotropy.initial_flocculation=1.8"});
+  const auto run = run_and_read(scene);
+  for (std::size_t i = 0; i < run.history.rows(); ++i)
+    ASSERT_NEAR(run.history.at("flocculation_mean")[i], 1.8 + 0.39 / 100.0 * run.history.at("time_s")[i], 1e-12);
+}
