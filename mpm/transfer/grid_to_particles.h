@@ -1,0 +1,267 @@
+#pragma once
+
+#include "mpm/material/stress_update.h"
+#include "mpm/transfer/gather.h"
+#include "mpm/transfer/nodes.h"
+#include "mpm/transfer/particles_to_grid.h"
+
+namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
+
+/// Divergence at the cells' centres, given to all their particles: the published B-bar (Yu et al. 2026, section 4).
+template <class T, int Dim, bool Axisymmetric, class Shape>
+void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile, const T* arena, int node_stride,
+                         const T* radial, T* dilatation) {
+  const T half = T(0.5), per_cell = T(1) / step.cell;
+  for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+    const int n = tile.cell_count(cell), first = tile.cell_first(cell);
+    if (n == 0) continue;
+    const T* base = arena + cell_base<T, Dim>(cell) * node_stride + 1;
+    T divergence = T(0), radial_velocity = T(0);
+    for (int i = 0; i < Shape::nodes; ++i)
+      for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
+        for (int k = 0; k < Shape::nodes; ++k) {
+          const T* v = base + arena_index<Dim>(i, j, k) * node_stride;
+          const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1), wk = Shape::weight(k, half);
+          divergence += v[0] * Shape::slope(i, half) * wj * wk + v[Dim - 1] * wi * wj * Shape::slope(k, half);
+          if constexpr (Dim == 3) divergence += v[1] * wi * Shape::slope(j, half) * wk;
+          if constexpr (Axisymmetric) radial_velocity += v[0] * wi * wk;
+        }
+    divergence *= per_cell;
+    if constexpr (Axisymmetric) divergence += radial_velocity * per_cell / (radial[first] + half);
+    for (int q = first; q < first + n; ++q) dilatation[q] = divergence;
+  }
+}
+
+/// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
+template <class T, int Dim, bool Axisymmetric, class Shape>
+void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, int node_stride, const T* const* x,
+                 const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
+  const int count = tile.count;
+  const T per_cell = T(1) / step.cell;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      T* g = s.gradient[i][j] = gathered.gradient[i][j];
+#pragma omp simd
+      for (int q = 0; q < count; ++q) g[q] *= per_cell;
+    }
+  s.dilatation = tile.fresh();
+  s.hoop = nullptr;
+  T* radial = nullptr;
+  if constexpr (Axisymmetric) {
+    s.hoop = tile.fresh();
+    radial = tile.fresh();
+    radial_cells(tile, radial);
+    const T* radial_velocity = gathered.value[0];
+#pragma omp simd
+    for (int q = 0; q < count; ++q)
+      s.hoop[q] = radial_velocity[q] / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
+  }
+  if (step.dilatation == Dilatation::centroid) {
+    centroid_dilatation<T, Dim, Axisymmetric, Shape>(step, tile, arena, node_stride, radial, s.dilatation);
+    return;
+  }
+  T* volume = tile.fresh();
+#pragma omp simd
+  for (int q = 0; q < count; ++q) {
+    volume[q] = mass[q] * s.ratio[q];
+    s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
+  }
+  average_over_cells(tile, volume, s.dilatation);
+}
+
+/// Volume, stress and flocculation of a tile after the step, and the sums that go with them.
+template <class T, int Dim, bool Axisymmetric>
+void update_stress(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, const T* mass,
+                   Strain<T, Dim>& s) {
+  constexpr int components = Deviator<T, Dim>::components;
+  const int count = tile.count;
+  for (int c = 0; c < components; ++c) s.deviator[c] = tile.open(particles.deviator[c]);
+  s.pressure = tile.fresh();
+  s.rate = tile.open(particles.rate);
+  const bool thixotropic = particles.lambda != nullptr;
+  s.lambda = thixotropic ? tile.open(particles.lambda) : nullptr;
+  s.shear = tile.fresh();
+  s.trial = tile.fresh();
+  s.stress = tile.fresh();
+  if (step.explicit_fluid) {
+    make_trial<T, Dim, Axisymmetric, StressRate::hughes_winget, true>(step, s, count);
+  } else if (step.stress_rate == StressRate::hughes_winget) {
+    make_trial<T, Dim, Axisymmetric, StressRate::hughes_winget, false>(step, s, count);
+  } else {
+    make_trial<T, Dim, Axisymmetric, StressRate::jaumann, false>(step, s, count);
+  }
+  relax(step, s, count);
+
+  T dissipated = T(0), largest_pressure = T(0);
+#pragma omp simd reduction(+ : dissipated) reduction(max : largest_pressure)
+  for (int q = 0; q < count; ++q) {
+    const T scale = s.stress[q] / maximum(s.trial[q], T(1e-30));
+    for (int c = 0; c < components; ++c) s.deviator[c][q] *= scale;
+    dissipated += mass[q] * s.ratio[q] * s.stress[q] * s.rate[q];
+    largest_pressure = largest_pressure > s.pressure[q] ? largest_pressure : s.pressure[q];
+  }
+  tile.close(particles.volume_ratio, s.ratio);
+  for (int c = 0; c < components; ++c) tile.close(particles.deviator[c], s.deviator[c]);
+  tile.close(particles.pressure, s.pressure);
+  tile.close(particles.rate, s.rate);
+  if (thixotropic) tile.close(particles.lambda, s.lambda);
+  BlockSums& sums = *tile.block.sums;
+  sums.dissipated += static_cast<double>(dissipated) * static_cast<double>(step.step / step.density);
+  sums.largest_pressure = maximum(sums.largest_pressure, static_cast<double>(largest_pressure));
+}
+
+/// Notes a particle that left its cell, and puts it where it belongs in the next one.
+template <class T, int Dim, class Shape>
+void note_mover(Tile<T, Dim>& tile, T* const* x, int q) {
+  BlockSums& sums = *tile.block.sums;
+  constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
+  Mover mover{tile.block.list[tile.first + q], {0, 0, 0}};
+  for (int a = 0; a < Dim; ++a) {
+    T& to = x[a][q];
+    if (to >= T(0) && to < T(1)) continue;
+    const int shift = to < T(0) ? -1 : 1;
+    const T inside = to - T(shift);
+    if (!(inside >= T(0) && inside <= T(1))) ++sums.faults;  // further than a cell, or not finite
+    to = minimum(maximum(inside, T(Shape::margin)), minimum(T(1.0 - Shape::margin), below_one));
+    mover.shift[a] = static_cast<std::int8_t>(shift);
+  }
+  tile.block.movers[sums.movers++] = mover;
+}
+
+/// Moves a tile's particles with the velocities `advection`.
+template <class T, int Dim, class Shape>
+void move_particles(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, T* const* x,
+                    const T* const* advection, const T* mass) {
+  const int count = tile.count;
+  // Counts axes along which a particle left its cell; a value that is not finite fails every comparison.
+  T* left = tile.fresh();
+  T momentum = T(0), largest_speed = T(0);
+  const T per_step = step.step * (T(1) / step.cell);
+#pragma omp simd reduction(max : largest_speed) reduction(+ : momentum)
+  for (int q = 0; q < count; ++q) {
+    T square = T(0), outside = T(0);
+    for (int a = 0; a < Dim; ++a) {
+      const T v = advection[a][q];
+      const T to = x[a][q] + v * per_step;
+      square += v * v;
+      outside += (to >= T(0) && to < T(1)) ? T(0) : T(1);
+      x[a][q] = to;
+    }
+    left[q] = outside;
+    momentum += mass[q] * advection[0][q];
+    largest_speed = largest_speed > square ? largest_speed : square;
+  }
+  for (int q = 0; q < count; ++q)
+    if (left[q] != T(0)) note_mover<T, Dim, Shape>(tile, x, q);
+  for (int a = 0; a < Dim; ++a) tile.close(particles.position[a], x[a]);
+  BlockSums& sums = *tile.block.sums;
+  sums.momentum += static_cast<double>(momentum);
+  sums.largest_speed_squared = maximum(sums.largest_speed_squared, static_cast<double>(largest_speed));
+}
+
+/// Strain, stress and motion of a tile whose velocity gradients per cell are gathered.
+template <class T, int Dim, bool Axisymmetric, class Shape>
+void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, const T* arena,
+                     int node_stride, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection) {
+  Strain<T, Dim> s;
+  const T* mass = tile.open(particles.mass);
+  s.ratio = tile.open(particles.volume_ratio);
+  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, node_stride, x, gathered, mass, s);
+  update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
+  move_particles<T, Dim, Shape>(step, particles, tile, x, advection, mass);
+}
+
+template <class T, int Dim, bool Axisymmetric>
+void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* /*arenas*/,
+                       const T* nodes, const Workspace<T>& workspace) {
+  alignas(64) T arena[nodes_per_arena<Dim> * record];
+  load_arena<T, Dim, Quadratic>(step, block, nodes, 1, arena);
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    T* x[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    Weights<T, Dim, Quadratic> weights;
+    weights.make(tile, x);
+    const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, true, true, true);
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
+      if (tile.cell_count(cell) > 0)
+        gather<T, Dim, Quadratic, true, true, true>(arena + cell_base<T, Dim>(cell) * record, record, x, weights,
+                                                    tile.cell_first(cell), tile.cell_count(cell), g);
+    for (int c = 0; c < Dim; ++c) {
+      tile.close(particles.velocity[c], g.value[c]);
+      for (int a = 0; a < Dim; ++a) tile.close(particles.affine[c * Dim + a], g.affine[c][a]);
+    }
+    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, record, x, g, g.value);
+  }
+}
+
+/// FLIP's velocities: v <- keep (v + dv) + (1 - keep) v_grid, then their momentum mapped back for the strain (MUSL).
+template <class T, int Dim>
+void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* arenas,
+                       const T* nodes, const Workspace<T>& workspace) {
+  constexpr int values = 2 * record;
+  alignas(64) T arena[nodes_per_arena<Dim> * values];
+  load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
+  T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * values;
+  for (int i = 0; i < nodes_per_arena<Dim> * values; ++i) remapped[i] = T(0);
+  using Momentum = Source<T, Dim, Linear, false>;
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    T *x[Dim], *v[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    for (int a = 0; a < Dim; ++a) v[a] = tile.open(particles.velocity[a]);
+    const T* mass = tile.open(particles.mass);
+    Weights<T, Dim, Linear> weights;
+    weights.make(tile, x);
+    const Gathered<T, Dim> fresh = room_for_gathered<T, Dim>(tile, true, false, false);
+    const Gathered<T, Dim> old = room_for_gathered<T, Dim>(tile, true, false, false);
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+      const int n = tile.cell_count(cell), first = tile.cell_first(cell);
+      if (n == 0) continue;
+      const T* base = arena + cell_base<T, Dim>(cell) * values;
+      gather<T, Dim, Linear, true, false, false>(base, values, x, weights, first, n, fresh);
+      gather<T, Dim, Linear, true, false, false>(base + record, values, x, weights, first, n, old);
+    }
+    Momentum* momentum = reinterpret_cast<Momentum*>(tile.memory + tile.capacity * tile.used);
+    for (int c = 0; c < Dim; ++c) {
+#pragma omp simd
+      for (int q = 0; q < tile.count; ++q)
+        v[c][q] = step.keep * (v[c][q] + fresh.value[c][q] - old.value[c][q]) + (T(1) - step.keep) * fresh.value[c][q];
+      tile.close(particles.velocity[c], v[c]);
+      tile.close(particles.advection[c], fresh.value[c]);
+    }
+    for (int q = 0; q < tile.count; ++q) {
+      momentum[q].value[0] = mass[q];
+      momentum[q].value[3] = T(0);
+      for (int c = 0; c < Dim; ++c) momentum[q].value[1 + c] = mass[q] * v[c][q];
+    }
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
+      if (tile.cell_count(cell) > 0)
+        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * values, values, momentum, weights,
+                                       tile.cell_first(cell), tile.cell_count(cell));
+  }
+}
+
+template <class T, int Dim, bool Axisymmetric>
+void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
+                           T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
+  constexpr int values = 2 * record;
+  alignas(64) T arena[nodes_per_arena<Dim> * values];
+  load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    T *x[Dim], *advection[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    for (int a = 0; a < Dim; ++a) advection[a] = tile.open(particles.advection[a]);
+    Weights<T, Dim, Linear> weights;
+    weights.make(tile, x);
+    const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, Axisymmetric, true, false);
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
+      if (tile.cell_count(cell) > 0)
+        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * values, values, x, weights,
+                                                          tile.cell_first(cell), tile.cell_count(cell), g);
+    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, values, x, g, advection);
+  }
+}
+
+}  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

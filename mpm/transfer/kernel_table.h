@@ -1,0 +1,25 @@
+#pragma once
+
+#include "mpm/transfer/grid_to_particles.h"
+#include "mpm/transfer/nodes.h"
+#include "mpm/transfer/particles_to_grid.h"
+
+/// The stages put together, one table for each dimension and transfer.
+namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
+
+template <class T, int Dim, bool Axisymmetric>
+Kernels<T> make_kernels(Transfer transfer) {
+  if (transfer == Transfer::quadratic_apic)
+    return {Dim, 1, particles_to_grid<T, Dim, Axisymmetric, Quadratic, false>, update_nodes<T, Dim, false, false>,
+            apic_to_particles<T, Dim, Axisymmetric>, nullptr, nullptr};
+  return {Dim, 2, particles_to_grid<T, Dim, Axisymmetric, Linear, true>, update_nodes<T, Dim, true, false>,
+          flip_to_particles<T, Dim>, update_nodes<T, Dim, true, true>, remapped_to_particles<T, Dim, Axisymmetric>};
+}
+
+template <class T>
+Kernels<T> select_kernels(int dimension, bool axisymmetric, Transfer transfer) {
+  if (dimension == 3) return make_kernels<T, 3, false>(transfer);
+  return axisymmetric ? make_kernels<T, 2, true>(transfer) : make_kernels<T, 2, false>(transfer);
+}
+
+}  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "mpm/boundary/plane_walls.h"
+#include "mpm/transfer/tile.h"
+
+namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
+
+/// Sums the arenas that share a block of nodes, in a fixed order, and turns momentum into velocity. Records after it:
+/// APIC (mass, velocity); FLIP (mass, new velocity), (0, old velocity).
+template <class T, int Dim, bool Flip, bool Remap>
+void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
+  constexpr int records = Flip ? 2 : 1;
+  constexpr int values = records * record;
+  T* out = nodes + static_cast<std::size_t>(view.slot) * cells_per_block<Dim> * values;
+  for (int node = 0; node < cells_per_block<Dim>; ++node) {
+    int c[3];
+    cell_coordinates<T, Dim>(node, c);
+    Record<T> sum[records];
+    for (auto& r : sum) r = Record<T>{};
+    for (int delta = 0; delta < (1 << Dim); ++delta) {
+      const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
+      const std::uint32_t slot = view.minus[delta];
+      if (slot == no_slot) continue;
+      const int i = c[0] + di * block_edge, j = c[1] + dj * block_edge, k = c[2] + dk * block_edge;
+      if (i >= arena_edge || j >= arena_edge || k >= arena_edge) continue;
+      const T* from = arenas + (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * values;
+      for (int r = 0; r < (Remap ? 1 : records); ++r) sum[r] += record_at(from + r * record);
+    }
+    const T mass = sum[0][0];
+    const T per_mass = mass > step.smallest_mass ? T(1) / mass : T(0);
+    if constexpr (Flip && !Remap) {
+      record_at(out + node * values) = (sum[0] + sum[1]) * per_mass;
+      record_at(out + node * values + record) = sum[0] * per_mass;
+      out[node * values + record] = T(0);
+    } else {
+      record_at(out + node * values) = sum[0] * per_mass;
+    }
+    out[node * values] = mass;
+  }
+}
+
+/// Copies the nodes a block's particles can see into one arena and sets the walls' values.
+template <class T, int Dim, class Shape>
+void load_arena(const StepParameters<T>& step, const BlockView& block, const T* nodes, int records, T* arena) {
+  const int values = records * record;
+  for (int i = 0; i < arena_edge; ++i)
+    for (int j = 0; j < (Dim == 3 ? arena_edge : 1); ++j)
+      for (int half = 0; half < 2; ++half) {
+        const int delta = Dim == 3 ? (i / block_edge) * 4 + (j / block_edge) * 2 + half : (i / block_edge) * 2 + half;
+        const int run = (half == 0 ? block_edge : arena_edge - block_edge) * values;
+        T* to = arena + arena_index<Dim>(i, j, half * block_edge) * values;
+        const std::uint32_t slot = block.plus[delta];
+        const int local = Dim == 3 ? (i % block_edge * block_edge + j % block_edge) * block_edge : i % block_edge * block_edge;
+        const T* from = nodes + (static_cast<std::size_t>(slot) * cells_per_block<Dim> + local) * values;
+        for (int n = 0; n < run; ++n) to[n] = from[n];
+      }
+  set_wall_velocities<T, Dim, Shape>(arena, records, block, step.bounds);
+}
+
+}  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

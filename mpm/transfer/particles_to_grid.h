@@ -1,0 +1,189 @@
+#pragma once
+
+#include "mpm/boundary/plane_walls.h"
+#include "mpm/material/deviator.h"
+#include "mpm/transfer/shape.h"
+#include "mpm/transfer/tile.h"
+
+namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
+
+/// One particle's contribution to the node records around it, the product of the axes' weights times
+/// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the plain weight (its
+/// offset times the affine part, its slope times the stress).
+template <class T, int Dim, class Shape, bool Terms>
+struct Source {
+  T value[4];
+  T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][4];
+};
+
+/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The accumulators of a slab
+/// of nodes stay in registers over the particles.
+template <class T, int Dim, class Shape, bool Terms>
+void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>* source, const Weights<T, Dim, Shape>& w,
+             int first, int count) {
+  constexpr int nodes = Shape::nodes;
+  constexpr int rows = Dim == 3 ? nodes : 1;
+  constexpr int last = Dim - 1;
+  const Record<T> zero = {};
+  for (int i = 0; i < nodes; ++i) {
+    Record<T> sum[rows][nodes];
+#pragma GCC unroll 9
+    for (int j = 0; j < rows; ++j)
+#pragma GCC unroll 9
+      for (int k = 0; k < nodes; ++k) sum[j][k] = zero;
+    for (int q = first; q < first + count; ++q) {
+      const auto& s = source[q];
+      const T wi = w.weight[0][i][q];
+#pragma GCC unroll 9
+      for (int j = 0; j < rows; ++j) {
+        T wij = wi;
+        Record<T> plane;
+        if constexpr (Dim == 3) {
+          const T wj = w.weight[1][j][q];
+          wij = wi * wj;
+          plane = wij * record_at(s.value);
+          if constexpr (Terms) plane += wj * record_at(s.term[0][i]) + wi * record_at(s.term[1][j]);
+        } else {
+          plane = wij * record_at(s.value);
+          if constexpr (Terms) plane += record_at(s.term[0][i]);
+        }
+#pragma GCC unroll 9
+        for (int k = 0; k < nodes; ++k) {
+          sum[j][k] += w.weight[last][k][q] * plane;
+          if constexpr (Terms) sum[j][k] += wij * record_at(s.term[last][k]);
+        }
+      }
+    }
+#pragma GCC unroll 9
+    for (int j = 0; j < rows; ++j)
+#pragma GCC unroll 9
+      for (int k = 0; k < nodes; ++k)
+        record_at(arena_cell + arena_index<Dim>(i, j, k) * node_stride) += sum[j][k];
+  }
+}
+
+/// Mass, momentum and the impulse of the step's forces of one block's particles, into that block's arena.
+template <class T, int Dim, bool Axisymmetric, class Shape, bool Flip>
+void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* arenas,
+                       const T* /*nodes*/, const Workspace<T>& workspace) {
+  constexpr int records = Flip ? 2 : 1;
+  constexpr int arena_values = nodes_per_arena<Dim> * records * record;
+  using Momentum = Source<T, Dim, Shape, !Flip>;  // FLIP: (m, m v) alone
+  using Force = Source<T, Dim, Shape, true>;
+  T* arena = arenas + static_cast<std::size_t>(block.slot) * arena_values;
+  for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
+
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    const int count = tile.count;
+    T* x[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    const T* mass = tile.open(particles.mass);
+    const T* ratio = tile.open(particles.volume_ratio);
+    const T* raw_pressure = tile.open(particles.pressure);
+    Weights<T, Dim, Shape> weights;
+    weights.make(tile, x);
+
+    T* volume = tile.fresh();
+    T* pressure = tile.fresh();
+    const T per_density = T(1) / step.density;
+#pragma omp simd
+    for (int q = 0; q < count; ++q) {
+      volume[q] = mass[q] * ratio[q] * per_density;
+      pressure[q] = raw_pressure[q];
+    }
+    const bool centroid = step.dilatation == Dilatation::centroid;
+    if (!centroid) average_over_cells(tile, volume, pressure);
+
+    T* per_radius = nullptr;
+    T* radial = nullptr;
+    if constexpr (Axisymmetric) {
+      radial = tile.fresh();
+      per_radius = tile.fresh();
+      radial_cells(tile, radial);
+#pragma omp simd
+      for (int q = 0; q < count; ++q) per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
+    }
+
+    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the workspace's
+    // rest, and what only they need is read from the particles' arrays straight away.
+    constexpr int source_values = static_cast<int>((sizeof(Momentum) + (Flip ? sizeof(Force) : 0)) / sizeof(T));
+    T* source_memory = tile.memory + tile.capacity * tile.used;
+    Momentum* momentum = reinterpret_cast<Momentum*>(source_memory);
+    Force* force = reinterpret_cast<Force*>(source_memory + static_cast<int>(sizeof(Momentum) / sizeof(T)) * tile.capacity);
+    static_assert(source_values + 30 <= workspace_arrays);
+    const T dt = step.step, impulse_per_cell = dt / step.cell;
+    const std::uint32_t* list = block.list + tile.first;
+    for (int q = 0; q < count; ++q) {
+      const std::uint32_t id = list[q];
+      Deviator<T, Dim> dev;
+      if constexpr (Dim == 2) {
+        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id]};
+      } else {
+        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id], particles.deviator[3][id],
+               particles.deviator[4][id]};
+      }
+      const T p = centroid ? T(0) : pressure[q];
+      const T m = mass[q], scale = -volume[q] * impulse_per_cell;
+      const Record<T> push = {T(0), m * dt * step.acceleration[0], m * dt * step.acceleration[1],
+                              Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
+      Record<T> moving = {m, m * particles.velocity[0][id], m * particles.velocity[1][id],
+                          Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};
+      Record<T> forcing = push;
+      if constexpr (Axisymmetric) forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+      Record<T> stress[Dim];
+      if constexpr (Dim == 3) {
+        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, scale * dev.xz};
+        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), scale * dev.yz};
+        stress[2] = Record<T>{T(0), scale * dev.xz, scale * dev.yz, scale * (dev.zz() - p)};
+      } else {
+        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, T(0)};
+        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), T(0)};
+      }
+      if constexpr (Flip) {
+        record_at(momentum[q].value) = moving;
+        record_at(force[q].value) = forcing;
+        for (int a = 0; a < Dim; ++a)
+          for (int n = 0; n < Shape::nodes; ++n) record_at(force[q].term[a][n]) = weights.slope[a][n][q] * stress[a];
+      } else {
+        record_at(momentum[q].value) = moving + forcing;
+        for (int a = 0; a < Dim; ++a) {
+          const Record<T> affine = {T(0), m * particles.affine[a][id], m * particles.affine[Dim + a][id],
+                                    Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
+          for (int n = 0; n < Shape::nodes; ++n)
+            record_at(momentum[q].term[a][n]) =
+                (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * affine + weights.slope[a][n][q] * stress[a];
+        }
+      }
+    }
+
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+      const int n = tile.cell_count(cell);
+      if (n == 0) continue;
+      const int first = tile.cell_first(cell);
+      T* base = arena + cell_base<T, Dim>(cell) * records * record;
+      scatter<T, Dim, Shape, !Flip>(base, records * record, momentum, weights, first, n);
+      if constexpr (Flip) scatter<T, Dim, Shape, true>(base + record, records * record, force, weights, first, n);
+      if (centroid) {
+        // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
+        T thrust = T(0);
+        for (int q = first; q < first + n; ++q) thrust += volume[q] * pressure[q];
+        const T hoop = Axisymmetric ? thrust * dt / (step.cell * (radial[first] + T(0.5))) : T(0);
+        const T push = thrust * impulse_per_cell;
+        for (int i = 0; i < Shape::nodes; ++i)
+          for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
+            for (int k = 0; k < Shape::nodes; ++k) {
+              const T half = T(0.5);
+              const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1), wk = Shape::weight(k, half);
+              T* to = base + arena_index<Dim>(i, j, k) * records * record + (Flip ? record : 0) + 1;
+              to[0] += push * Shape::slope(i, half) * wj * wk + hoop * wi * wj * wk;
+              if constexpr (Dim == 3) to[1] += push * wi * Shape::slope(j, half) * wk;
+              to[Dim - 1] += push * wi * wj * Shape::slope(k, half);
+            }
+      }
+    }
+  }
+  if constexpr (Shape::nodes == 3) fold_ghosts<T, Dim>(arena, records, block, step.bounds);
+}
+
+}  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE
