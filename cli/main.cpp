@@ -1,5 +1,6 @@
 // flowrest: when does fresh concrete stop, where, and which simulation can be trusted to say so?
-// Each room adds its own subcommands; this file only assembles them and turns what went wrong into exit codes.
+// Each room adds its own subcommands; this file only assembles them and turns what went wrong into exit
+// codes.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -29,7 +30,8 @@ int fail(int code, const char* what) {
 
 int main(int argc, char** argv) {
   using namespace flowrest;
-  CLI::App app{"flowrest: when does fresh concrete stop, where, and which simulation can be trusted to say so?"};
+  CLI::App app{
+      "flowrest: when does fresh concrete stop, where, and which simulation can be trusted to say so?"};
   app.require_subcommand(1);
   app.set_version_flag("--version", FLOWREST_VERSION);
   scenes::add_commands(app);

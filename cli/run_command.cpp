@@ -92,9 +92,11 @@ std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, co
 
 class Scheduler {
  public:
-  Scheduler(std::deque<Job> jobs, int at_once, fs::path logs) : waiting_(std::move(jobs)), at_once_(at_once), logs_(std::move(logs)) {}
+  Scheduler(std::deque<Job> jobs, int at_once, fs::path logs)
+      : waiting_(std::move(jobs)), at_once_(at_once), logs_(std::move(logs)) {}
 
-  /// Runs everything; returns the exit code to end with: that of the first job that failed, 130 where interrupted.
+  /// Runs everything; returns the exit code to end with: that of the first job that failed, 130 where
+  /// interrupted.
   int run() {
     const runs::InterruptGuard guard;
     const fs::path program = fs::read_symlink("/proc/self/exe");
@@ -152,9 +154,10 @@ int call(const std::vector<std::string>& arguments, const fs::path& log) {
   return end->signal ? 1 : end->exit_code;
 }
 
-/// Exact solutions and the report over every run that left a directory; returns the first exit code that is not 0.
-int compare_runs(const scenes::Scene& scene, const std::string& named, const fs::path& folder, std::vector<fs::path> made,
-                 const RunCommandOptions& options) {
+/// Exact solutions and the report over every run that left a directory; returns the first exit code that is
+/// not 0.
+int compare_runs(const scenes::Scene& scene, const std::string& named, const fs::path& folder,
+                 std::vector<fs::path> made, const RunCommandOptions& options) {
   int code = 0;
   if (scene.runs.exact) {
     std::vector<std::string> exact = {"exact", named, "-o", (folder / "exact").string()};
@@ -181,7 +184,10 @@ int run_scene(const std::string& named, const RunCommandOptions& options) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int at_once = options.jobs > 0 ? options.jobs : cores;
   auto jobs = jobs_of(scene, named, folder, options, at_once > 1);
-  if (jobs.empty() && !scene.runs.exact) throw scenes::SceneError(fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}", scene.path.string()));
+  if (jobs.empty() && !scene.runs.exact)
+    throw scenes::SceneError(
+        fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}",
+                    scene.path.string()));
   std::vector<fs::path> made;
   for (const auto& job : jobs) made.push_back(job.directory);
   int code = Scheduler(std::move(jobs), at_once, logs).run();
@@ -198,10 +204,13 @@ int run_scene(const std::string& named, const RunCommandOptions& options) {
 
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<RunCommandOptions>();
-  CLI::App* command = app.add_subcommand("run", "Make every run that a scene names, then compare them: the main job");
+  CLI::App* command =
+      app.add_subcommand("run", "Make every run that a scene names, then compare them: the main job");
   command->add_option("scene", options->scenes, "Scenes, by name or path")->required();
-  command->add_option("--set", options->set, "KEY=VALUE: override a key in all of them")->allow_extra_args(false);
-  command->add_option("-o,--output", options->output, "Folder that receives SCENE/RUN and SCENE/report")->capture_default_str();
+  command->add_option("--set", options->set, "KEY=VALUE: override a key in all of them")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", options->output, "Folder that receives SCENE/RUN and SCENE/report")
+      ->capture_default_str();
   command->add_option("-j,--jobs", options->jobs, "Runs at once (as many as there are cores)");
   command->callback([options] {
     int code = 0;

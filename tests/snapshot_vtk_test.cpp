@@ -86,5 +86,6 @@ TEST_P(SnapshotInVtk, HoldsEveryParticleWithItsFields) {
   EXPECT_EQ(next, count);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryShape, SnapshotInVtk, testing::Values("axisymmetric", "plane", "quarter", "full"),
+INSTANTIATE_TEST_SUITE_P(OfEveryShape, SnapshotInVtk,
+                         testing::Values("axisymmetric", "plane", "quarter", "full"),
                          [](const auto& tested) { return tested.param; });

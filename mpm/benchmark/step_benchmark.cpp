@@ -3,8 +3,8 @@
 //   scripts/bench                                   everything
 //   scripts/bench --benchmark_filter=full/44k       one of them
 //
-// `particle_steps` is per CPU second; `of_fma` is that rate over the machine's fused multiply-adds per second, measured in
-// the same call, so that figures of different machines can be laid side by side.
+// `particle_steps` is per CPU second; `of_fma` is that rate over the machine's fused multiply-adds per
+// second, measured in the same call, so that figures of different machines can be laid side by side.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -20,9 +20,12 @@ namespace {
 
 using namespace flowrest;
 
-double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
-/// Fused multiply-adds per second of one core in double precision: independent chains, as wide as this build's vectors.
+/// Fused multiply-adds per second of one core in double precision: independent chains, as wide as this
+/// build's vectors.
 double fma_per_second() {
   typedef double Wide __attribute__((vector_size(64)));
   Wide chain[8];
@@ -66,20 +69,24 @@ void steps(benchmark::State& state, const Case& c, double fma, double bandwidth)
   for (int i = 0; i < 60; ++i) advance();
   for (auto _ : state) advance();
   const auto particles = static_cast<double>(solver->particle_count());
-  state.counters["particle_steps"] = benchmark::Counter(particles * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["particle_steps"] =
+      benchmark::Counter(particles * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
   state.counters["particles"] = particles;
   state.counters["bytes_per_particle"] = static_cast<double>(solver->bytes()) / particles;
   state.counters["fma_per_s"] = fma;
   state.counters["bytes_per_s"] = bandwidth;
-  state.counters["of_fma"] = benchmark::Counter(particles * static_cast<double>(state.iterations()) / fma, benchmark::Counter::kIsRate);
+  state.counters["of_fma"] = benchmark::Counter(particles * static_cast<double>(state.iterations()) / fma,
+                                                benchmark::Counter::kIsRate);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const double fma = fma_per_second(), bandwidth = bytes_per_second();
-  const std::vector<std::string> quarter_44k = {"geometry.dimension=quarter", "mpm.cell=0.0063", "mpm.particles_per_cell=8", "mpm.threads=1"};
-  const std::vector<std::string> quarter_1m = {"geometry.dimension=quarter", "mpm.cell=0.0022", "mpm.particles_per_cell=8", "mpm.threads=1"};
+  const std::vector<std::string> quarter_44k = {"geometry.dimension=quarter", "mpm.cell=0.0063",
+                                                "mpm.particles_per_cell=8", "mpm.threads=1"};
+  const std::vector<std::string> quarter_1m = {"geometry.dimension=quarter", "mpm.cell=0.0022",
+                                               "mpm.particles_per_cell=8", "mpm.threads=1"};
   std::vector<Case> cases;
   for (const auto& [size, base] : {std::pair{"44k", quarter_44k}, std::pair{"1M", quarter_1m}})
     for (const char* scheme : {"quadratic-apic", "linear-flip"})
@@ -92,13 +99,15 @@ int main(int argc, char** argv) {
   cases.push_back({"quarter/44k/quadratic-apic/double/papanastasiou", quarter_44k});
   cases.back().set.push_back("material.model=papanastasiou");
   cases.push_back({"quarter/44k/quadratic-apic/double/thixotropic", quarter_44k});
-  for (const char* key : {"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15", "thixotropy.initial_flocculation=0.5"})
+  for (const char* key : {"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15",
+                          "thixotropy.initial_flocculation=0.5"})
     cases.back().set.push_back(key);
   cases.push_back({"axisymmetric/2k/quadratic-apic/double", {"mpm.threads=1"}});
   cases.push_back({"axisymmetric/33k/quadratic-apic/double", {"mpm.threads=1", "mpm.cell=0.0025"}});
   for (const auto& c : cases)
-    benchmark::RegisterBenchmark(c.name.c_str(), [c, fma, bandwidth](benchmark::State& s) { steps(s, c, fma, bandwidth); })
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(c.name.c_str(), [c, fma, bandwidth](benchmark::State& s) {
+      steps(s, c, fma, bandwidth);
+    })->Unit(benchmark::kMillisecond);
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

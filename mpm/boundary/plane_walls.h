@@ -5,7 +5,8 @@
 /// Plane walls along the grid, and planes of symmetry, which are slip walls.
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// Calls use(node, image) for every arena node on layer `from` of an axis and the one opposite it on layer `to`.
+/// Calls use(node, image) for every arena node on layer `from` of an axis and the one opposite it on layer
+/// `to`.
 template <int Dim, class Use>
 FLOWREST_INLINE void across_layers(int a, int from, int to, Use use) {
   const int edge[3] = {arena_edge, Dim == 3 ? arena_edge : 1, arena_edge};
@@ -24,8 +25,8 @@ FLOWREST_INLINE void across_layers(int a, int from, int to, Use use) {
 /// Whether a wall turns the sign of velocity component `c` in the mirrored body. `a` is the wall's own axis.
 FLOWREST_INLINE bool odd_across(PlaneWall wall, int a, int c) { return wall == PlaneWall::no_slip || c == a; }
 
-/// Folds what fell on the ghost nodes behind plane walls onto their mirror images: mass is added, momentum with the sign of
-/// the mirrored body's. Only the quadratic functions reach behind a wall.
+/// Folds what fell on the ghost nodes behind plane walls onto their mirror images: mass is added, momentum
+/// with the sign of the mirrored body's. Only the quadratic functions reach behind a wall.
 template <class T, int Dim>
 void fold_ghosts(T* arena, int records, const BlockView& block, const AxisBounds* bounds) {
   for (int a = 0; a < Dim; ++a)
@@ -48,8 +49,8 @@ void fold_ghosts(T* arena, int records, const BlockView& block, const AxisBounds
     }
 }
 
-/// Sets the velocities that plane walls prescribe. Quadratic: the ghost node mirrors the first one inside. Linear: the node
-/// on the wall itself is held.
+/// Sets the velocities that plane walls prescribe. Quadratic: the ghost node mirrors the first one inside.
+/// Linear: the node on the wall itself is held.
 template <class T, int Dim, class Shape>
 void set_wall_velocities(T* arena, int records, const BlockView& block, const AxisBounds* bounds) {
   for (int a = 0; a < Dim; ++a)

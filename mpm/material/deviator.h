@@ -5,8 +5,8 @@
 /// Symmetric traceless tensors and velocity gradients, over any scalar.
 namespace flowrest::mpm {
 
-/// A symmetric traceless tensor; zz follows from the trace. In two dimensions xz and yz vanish and are not carried; zz is
-/// the hoop component of an axisymmetric body or the one normal to the plane.
+/// A symmetric traceless tensor; zz follows from the trace. In two dimensions xz and yz vanish and are not
+/// carried; zz is the hoop component of an axisymmetric body or the one normal to the plane.
 template <class T, int Dim>
 struct Deviator;
 
@@ -37,7 +37,8 @@ struct Deviator<T, 3> {
   }
 };
 
-/// Velocity gradient of one particle: gradient[i][j] = d v_i / d x_j, 1/s; `hoop` is v_r / r where axisymmetric, else 0.
+/// Velocity gradient of one particle: gradient[i][j] = d v_i / d x_j, 1/s; `hoop` is v_r / r where
+/// axisymmetric, else 0.
 template <class T, int Dim>
 struct VelocityGradient {
   T g[Dim][Dim];
@@ -59,8 +60,8 @@ struct VelocityGradient {
   }
 };
 
-/// The incremental rotation of Hughes and Winget (1980), R = (I - W dt/2)^-1 (I + W dt/2): stress turns rigidly with the
-/// spin W = skw(L), its invariants unchanged to round-off at any step.
+/// The incremental rotation of Hughes and Winget (1980), R = (I - W dt/2)^-1 (I + W dt/2): stress turns
+/// rigidly with the spin W = skw(L), its invariants unchanged to round-off at any step.
 template <class T>
 FLOWREST_INLINE Deviator<T, 2> rotated(const Deviator<T, 2>& s, const VelocityGradient<T, 2>& l, T dt) {
   const T t = T(0.25) * dt * (l.g[0][1] - l.g[1][0]);  // W_xy dt / 2 = tan(angle / 2)
@@ -91,7 +92,8 @@ FLOWREST_INLINE Deviator<T, 3> rotated(const Deviator<T, 3>& s, const VelocityGr
           m10 * r20 + m11 * r21 + m12 * r22};
 }
 
-/// The Jaumann rate taken explicitly, s + dt (W s - s W), Yu et al. 2026, Eq. 37: objective to first order in the step.
+/// The Jaumann rate taken explicitly, s + dt (W s - s W), Yu et al. 2026, Eq. 37: objective to first order in
+/// the step.
 template <class T>
 FLOWREST_INLINE Deviator<T, 2> jaumann(const Deviator<T, 2>& s, const VelocityGradient<T, 2>& l, T dt) {
   const T w = T(0.5) * dt * (l.g[0][1] - l.g[1][0]);
@@ -105,8 +107,8 @@ FLOWREST_INLINE Deviator<T, 3> jaumann(const Deviator<T, 3>& s, const VelocityGr
   const T yz = T(0.5) * dt * (l.g[1][2] - l.g[2][1]);
   const T zz = s.zz();
   return {s.xx + T(2) * (xy * s.xy + xz * s.xz), s.yy + T(2) * (yz * s.yz - xy * s.xy),
-          s.xy + xy * (s.yy - s.xx) + xz * s.yz + yz * s.xz,
-          s.xz + xz * (zz - s.xx) + xy * s.yz - yz * s.xy, s.yz + yz * (zz - s.yy) - xy * s.xz - xz * s.xy};
+          s.xy + xy * (s.yy - s.xx) + xz * s.yz + yz * s.xz, s.xz + xz * (zz - s.xx) + xy * s.yz - yz * s.xy,
+          s.yz + yz * (zz - s.yy) - xy * s.xz - xz * s.xy};
 }
 
 }  // namespace flowrest::mpm

@@ -34,10 +34,13 @@ Matrix matrix(const Deviator<double, 3>& s) {
   return {{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz()}}};
 }
 
-Matrix matrix(const Deviator<double, 2>& s) { return {{{s.xx, s.xy, 0.0}, {s.xy, s.yy, 0.0}, {0.0, 0.0, s.zz()}}}; }
+Matrix matrix(const Deviator<double, 2>& s) {
+  return {{{s.xx, s.xy, 0.0}, {s.xy, s.yy, 0.0}, {0.0, 0.0, s.zz()}}};
+}
 
 double determinant(const Matrix& m) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
@@ -130,7 +133,8 @@ TEST(Deviator, StrainRateIsTheSymmetricTracelessPartOfTheGradient) {
     const double third = (l.g[0][0] + l.g[1][1] + l.g[2][2]) / 3.0;
     Matrix expected{};
     for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = 0; b < 3; ++b) expected[a][b] = 0.5 * (l.g[a][b] + l.g[b][a]) - (a == b ? third : 0.0);
+      for (std::size_t b = 0; b < 3; ++b)
+        expected[a][b] = 0.5 * (l.g[a][b] + l.g[b][a]) - (a == b ? third : 0.0);
     EXPECT_LT(largest_difference(d, expected), 1e-14);
   }
 }
@@ -227,7 +231,8 @@ TEST(Jaumann, AgreesWithTheRotationToFirstOrderInTheStep) {
   const auto difference = [&](double dt) {
     return largest_difference(matrix(jaumann(s, l, dt)), matrix(rotated(s, l, dt)));
   };
-  EXPECT_NEAR(std::log2(difference(2e-3) / difference(1e-3)), 2.0, 0.02);  // of one step: its error is dt squared
+  EXPECT_NEAR(std::log2(difference(2e-3) / difference(1e-3)), 2.0,
+              0.02);  // of one step: its error is dt squared
 }
 
 TEST(Deviator, TwoDimensionsAreThreeWithNothingAcrossThePlane) {
@@ -243,7 +248,8 @@ TEST(Deviator, TwoDimensionsAreThreeWithNothingAcrossThePlane) {
     const double dt = random.log_between(1e-4, 1.0);
     EXPECT_LT(largest_difference(matrix(rotated(plane, l2, dt)), matrix(rotated(full, l3, dt))), 1e-14);
     EXPECT_LT(largest_difference(matrix(jaumann(plane, l2, dt)), matrix(jaumann(full, l3, dt))), 1e-14);
-    EXPECT_LT(largest_difference(matrix(l2.strain_rate_deviator()), matrix(l3.strain_rate_deviator())), 1e-14);
+    EXPECT_LT(largest_difference(matrix(l2.strain_rate_deviator()), matrix(l3.strain_rate_deviator())),
+              1e-14);
     EXPECT_NEAR(plane.half_square(), full.half_square(), 1e-15);
   }
 }

@@ -4,16 +4,17 @@
 
 namespace flowrest::mpm {
 
-/// Weakly compressible equation of state, Yu et al. 2026, Eqs. 6, 18 and 31, with the volumetric strain e = J - 1.
+/// Weakly compressible equation of state, Yu et al. 2026, Eqs. 6, 18 and 31, with the volumetric strain e = J
+/// - 1.
 template <class T>
 struct EquationOfState {
-  T bulk_modulus{};  ///< K0, Pa
-  T shear_modulus{}; ///< G0, Pa
-  T exponent{};      ///< gamma
+  T bulk_modulus{};   ///< K0, Pa
+  T shear_modulus{};  ///< G0, Pa
+  T exponent{};       ///< gamma
 
   struct State {
-    T pressure;    ///< Pa, positive in compression
-    T shear;       ///< G, Pa: keeps its ratio to K
+    T pressure;  ///< Pa, positive in compression
+    T shear;     ///< G, Pa: keeps its ratio to K
   };
   FLOWREST_INLINE State at(T volume_ratio) const {
     const T stiffening = exponential(-exponent * (volume_ratio - T(1)));

@@ -22,7 +22,8 @@ TEST(EquationOfState, StiffnessIsMinusThePressuresSlope) {
   for (const double ratio : {0.8, 0.92, 0.99, 1.0, 1.01, 1.1}) {
     const double d = 1e-6;
     const double slope = -(state.at(ratio + d).pressure - state.at(ratio - d).pressure) / (2.0 * d);
-    const double stiffness = state.bulk_modulus * std::exp(-state.exponent * (ratio - 1.0));  // Yu et al. 2026, Eq. 18
+    const double stiffness =
+        state.bulk_modulus * std::exp(-state.exponent * (ratio - 1.0));  // Yu et al. 2026, Eq. 18
     EXPECT_NEAR(slope, stiffness, 1e-8 * stiffness) << "J = " << ratio;
   }
 }
@@ -30,7 +31,8 @@ TEST(EquationOfState, StiffnessIsMinusThePressuresSlope) {
 TEST(EquationOfState, ShearAndBulkStiffnessKeepTheirRatio) {
   for (const double ratio : {0.7, 0.95, 1.2}) {
     const double bulk = state.exponent * state.at(ratio).pressure + state.bulk_modulus;
-    EXPECT_NEAR(state.at(ratio).shear / bulk, state.shear_modulus / state.bulk_modulus, 1e-15) << "J = " << ratio;
+    EXPECT_NEAR(state.at(ratio).shear / bulk, state.shear_modulus / state.bulk_modulus, 1e-15)
+        << "J = " << ratio;
   }
 }
 
@@ -53,6 +55,7 @@ TEST(EquationOfState, IsTheSameInSinglePrecisionToRoundOff) {
   const EquationOfState<float> single = {83333.0f, 38461.0f, 7.0f};
   for (const double ratio : {0.9, 1.05}) {
     const double pressure = state.at(ratio).pressure;
-    EXPECT_NEAR(static_cast<double>(single.at(static_cast<float>(ratio)).pressure), pressure, 3e-6 * std::abs(pressure));
+    EXPECT_NEAR(static_cast<double>(single.at(static_cast<float>(ratio)).pressure), pressure,
+                3e-6 * std::abs(pressure));
   }
 }

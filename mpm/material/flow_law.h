@@ -2,8 +2,8 @@
 
 #include "mpm/simd/math.h"
 
-/// The flow laws, each as what happens to the shear stress invariant of the elastic trial within one step. All laws share
-/// the trial (deviator.h) and the equation of state; they differ only in `relax`.
+/// The flow laws, each as what happens to the shear stress invariant of the elastic trial within one step.
+/// All laws share the trial (deviator.h) and the equation of state; they differ only in `relax`.
 ///
 /// tau = sqrt(s:s / 2) and rate = sqrt(2 D:D) throughout.
 namespace flowrest::mpm {
@@ -11,12 +11,12 @@ namespace flowrest::mpm {
 /// Parameters of every law, resolved from the scene; what a law does not use it does not read.
 template <class T>
 struct FlowParameters {
-  T yield_stress{};          ///< Pa
-  T plastic_viscosity{};     ///< Pa s
-  T regularisation_time{};   ///< s
-  T critical_shear_rate{};   ///< 1/s
-  T flocculation_growth{};   ///< A_thix / tau0, 1/s
-  T deflocculation{};        ///< alpha
+  T yield_stress{};         ///< Pa
+  T plastic_viscosity{};    ///< Pa s
+  T regularisation_time{};  ///< s
+  T critical_shear_rate{};  ///< 1/s
+  T flocculation_growth{};  ///< A_thix / tau0, 1/s
+  T deflocculation{};       ///< alpha
 };
 
 /// What a step leaves of the trial.
@@ -35,36 +35,40 @@ struct ElastoViscoplastic {
 
   /// `trial` is tau of the elastic trial, Pa; `shear` is G dt, Pa s.
   template <class T>
-  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda, T /*rate*/) {
+  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
+                                          T /*rate*/) {
     const T viscosity = shear + p.plastic_viscosity;
     if constexpr (!Thixotropic) {
       const T excess = maximum(trial - p.yield_stress, T(0));
       const T rate = excess / viscosity;  // Eq. 47
       return {trial - shear * rate, rate, T(0)};
     } else {
-      const T lambda_trial = lambda + p.flocculation_growth * dt;               // Eq. 38
+      const T lambda_trial = lambda + p.flocculation_growth * dt;                      // Eq. 38
       const T excess = maximum(trial - (T(1) + lambda_trial) * p.yield_stress, T(0));  // Eq. 39
-      // Eqs. 43 and 44. As printed the root cancels for small alpha; this form does not, and holds for alpha = 0.
+      // Eqs. 43 and 44. As printed the root cancels for small alpha; this form does not, and holds for alpha
+      // = 0.
       const T xi = viscosity + dt * p.deflocculation * (p.yield_stress - trial);
       const T zeta = T(2) * p.deflocculation * dt * viscosity;
       const T root = square_root(xi * xi + T(2) * zeta * excess);
       const T flow = xi >= T(0) ? T(2) * excess / (xi + root) : (root - xi) / maximum(zeta, T(1e-30));
-      // Where breakdown is so strong that xi < 0 the balance has a second root at yield: below it nothing flows all the same.
+      // Where breakdown is so strong that xi < 0 the balance has a second root at yield: below it nothing
+      // flows all the same.
       const T rate = excess > T(0) ? flow : T(0);
       return {trial - shear * rate, rate, lambda_trial / (T(1) + dt * p.deflocculation * rate)};  // Eq. 45
     }
   }
 };
 
-/// A fluid whose stress is found pointwise implicitly: tau_trial - G dt x = tau(x). No viscous limit on the step.
-/// Thixotropy is staggered: lambda first, with the last step's rate, then the stress with lambda held.
+/// A fluid whose stress is found pointwise implicitly: tau_trial - G dt x = tau(x). No viscous limit on the
+/// step. Thixotropy is staggered: lambda first, with the last step's rate, then the stress with lambda held.
 template <bool Thixotropic>
 struct BiViscous {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = false;
 
   template <class T>
-  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda, T rate_before) {
+  static FLOWREST_INLINE Relaxed<T> relax(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
+                                          T rate_before) {
     T yield = p.yield_stress;
     if constexpr (Thixotropic) {
       lambda = (lambda + p.flocculation_growth * dt) / (T(1) + dt * p.deflocculation * rate_before);
@@ -90,16 +94,17 @@ struct Newtonian {
   }
 };
 
-/// Papanastasiou-regularised Bingham fluid, tau(x) = eta x + yield (1 - exp(-m x)), Yu et al. 2026, Eqs. 10 and 13.
-/// The balance falls and is convex in x, so Newton's method approaches the root from below without overshoot once it is
-/// below it; the Bingham solution is such a start. `iterative`: the loop over particles calls `iterate` until all balance.
+/// Papanastasiou-regularised Bingham fluid, tau(x) = eta x + yield (1 - exp(-m x)), Yu et al. 2026, Eqs. 10
+/// and 13. The balance falls and is convex in x, so Newton's method approaches the root from below without
+/// overshoot once it is below it; the Bingham solution is such a start. `iterative`: the loop over particles
+/// calls `iterate` until all balance.
 template <bool Thixotropic>
 struct Papanastasiou {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = true;
 
-  /// The balance at a rate, Pa, and Newton's next one, never below the Bingham solution. The balance and not the rate says
-  /// when to stop: near yield a rate is known less well than a stress by orders of magnitude.
+  /// The balance at a rate, Pa, and Newton's next one, never below the Bingham solution. The balance and not
+  /// the rate says when to stop: near yield a rate is known less well than a stress by orders of magnitude.
   template <class T>
   struct Iterate {
     T residual, rate;
@@ -108,7 +113,8 @@ struct Papanastasiou {
   static FLOWREST_INLINE Iterate<T> iterate(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
     const T viscosity = shear + p.plastic_viscosity;
     const T floor = maximum(trial - yield, T(0)) / viscosity;
-    const T lost = exponential_minus_one(-p.regularisation_time * rate);  // exp(-m x) - 1, exact at creep rates too
+    const T lost =
+        exponential_minus_one(-p.regularisation_time * rate);  // exp(-m x) - 1, exact at creep rates too
     const T residual = trial - viscosity * rate + yield * lost;
     const T slope = viscosity + yield * p.regularisation_time * (T(1) + lost);
     return {residual, maximum(rate + residual / slope, floor)};

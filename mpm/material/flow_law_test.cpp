@@ -32,24 +32,30 @@ State random_state(Random& random) {
   s.dt = random.log_between(1e-6, 1e-2);
   s.shear = random.log_between(1e3, 1e6) * s.dt;
   s.lambda = random.chance(0.2) ? 0.0 : random.log_between(1e-6, 1e6);
-  s.trial = (1.0 + s.lambda + s.flow.flocculation_growth * s.dt) * s.flow.yield_stress * random.log_between(0.5, 1e3);
+  s.trial = (1.0 + s.lambda + s.flow.flocculation_growth * s.dt) * s.flow.yield_stress *
+            random.log_between(0.5, 1e3);
   return s;
 }
 
-/// The balance of Yu et al. 2026, Eq. 42, as it stands, in long double: what the trial exceeds the viscoplastic stress by.
+/// The balance of Yu et al. 2026, Eq. 42, as it stands, in long double: what the trial exceeds the
+/// viscoplastic stress by.
 long double excess_at(const State& s, long double rate) {
   const long double lambda_trial =
       static_cast<long double>(s.lambda) + static_cast<long double>(s.flow.flocculation_growth) * s.dt;
-  const long double lambda = lambda_trial / (1.0L + static_cast<long double>(s.dt) * s.flow.deflocculation * rate);
-  return static_cast<long double>(s.trial) - (static_cast<long double>(s.shear) + s.flow.plastic_viscosity) * rate -
+  const long double lambda =
+      lambda_trial / (1.0L + static_cast<long double>(s.dt) * s.flow.deflocculation * rate);
+  return static_cast<long double>(s.trial) -
+         (static_cast<long double>(s.shear) + s.flow.plastic_viscosity) * rate -
          (1.0L + lambda) * s.flow.yield_stress;
 }
 
-/// Its root, by bisection to the last place: the balance falls through zero once (it is concave and positive at zero).
+/// Its root, by bisection to the last place: the balance falls through zero once (it is concave and positive
+/// at zero).
 long double exact_rate(const State& s) {
   if (excess_at(s, 0.0L) <= 0.0L) return 0.0L;
   long double low = 0.0L;
-  long double high = static_cast<long double>(s.trial) / (static_cast<long double>(s.shear) + s.flow.plastic_viscosity);
+  long double high =
+      static_cast<long double>(s.trial) / (static_cast<long double>(s.shear) + s.flow.plastic_viscosity);
   for (int i = 0; i < 400; ++i) {
     const long double middle = low > 0.0L && high > 4.0L * low ? std::sqrt(low * high) : 0.5L * (low + high);
     if (middle <= low || middle >= high) break;
@@ -58,8 +64,8 @@ long double exact_rate(const State& s) {
   return 0.5L * (low + high);
 }
 
-/// How much a relative change of the data by one moves the rate, relatively: what no method in this precision can beat.
-/// d(rate) = d(balance) / slope, the balance's terms each uncertain by round-off.
+/// How much a relative change of the data by one moves the rate, relatively: what no method in this precision
+/// can beat. d(rate) = d(balance) / slope, the balance's terms each uncertain by round-off.
 double condition(const State& s, long double rate) {
   const long double viscosity = static_cast<long double>(s.shear) + s.flow.plastic_viscosity;
   const long double growth = static_cast<long double>(s.dt) * s.flow.deflocculation;
@@ -73,7 +79,8 @@ double condition(const State& s, long double rate) {
 
 template <bool Thixotropic>
 Relaxed<double> relax(const State& s) {
-  return ElastoViscoplastic<Thixotropic>::template relax<double>(s.flow, s.trial, s.shear, s.dt, s.lambda, 0.0);
+  return ElastoViscoplastic<Thixotropic>::template relax<double>(s.flow, s.trial, s.shear, s.dt, s.lambda,
+                                                                 0.0);
 }
 
 /// The root of a falling function between `low` and `high`.
@@ -102,12 +109,12 @@ TEST(ElastoViscoplastic, ThixotropicReturnIsTheExactRootOverRandomStates) {
     const double error = static_cast<double>(std::abs(r.rate - exact) / exact);
     const double forbidden = unit * condition(s, exact);
     worst_against_condition = std::max(worst_against_condition, error / forbidden);
-    // Round-off alone moves the root of an ill-conditioned state (at yield, or where alpha makes the balance flat) by
-    // more than 1e-12: there the error is held against the condition.
+    // Round-off alone moves the root of an ill-conditioned state (at yield, or where alpha makes the balance
+    // flat) by more than 1e-12: there the error is held against the condition.
     if (4.0 * forbidden > 1e-12) {
       ++ill_conditioned;
-      ASSERT_LE(error, 4.0 * forbidden) << "rate " << r.rate << ", exact " << static_cast<double>(exact) << ", alpha "
-                                        << s.flow.deflocculation;
+      ASSERT_LE(error, 4.0 * forbidden) << "rate " << r.rate << ", exact " << static_cast<double>(exact)
+                                        << ", alpha " << s.flow.deflocculation;
     } else {
       ++to_tolerance;
       worst = std::max(worst, error);
@@ -116,9 +123,12 @@ TEST(ElastoViscoplastic, ThixotropicReturnIsTheExactRootOverRandomStates) {
     }
   }
   RecordProperty("worst_relative_error", std::to_string(worst));
-  EXPECT_GT(to_tolerance, 100000) << "of " << yielding << " yielding states, " << ill_conditioned << " ill conditioned";
-  std::printf("    %d states to 1e-12 (worst %.2g), %d bound by their condition (worst %.2g of unit round-off times it)\n",
-              to_tolerance, worst, ill_conditioned, worst_against_condition);
+  EXPECT_GT(to_tolerance, 100000) << "of " << yielding << " yielding states, " << ill_conditioned
+                                  << " ill conditioned";
+  std::printf(
+      "    %d states to 1e-12 (worst %.2g), %d bound by their condition (worst %.2g of unit round-off times "
+      "it)\n",
+      to_tolerance, worst, ill_conditioned, worst_against_condition);
 }
 
 TEST(ElastoViscoplastic, WithoutThixotropyTheReturnIsLinear) {
@@ -134,7 +144,8 @@ TEST(ElastoViscoplastic, WithoutThixotropyTheReturnIsLinear) {
       ASSERT_EQ(r.rate, 0.0);
     }
     const Relaxed<double> thixotropic = relax<true>(s);
-    ASSERT_NEAR(r.rate, thixotropic.rate, 4.0 * unit * r.rate) << "with lambda and alpha zero both are one law";
+    ASSERT_NEAR(r.rate, thixotropic.rate, 4.0 * unit * r.rate)
+        << "with lambda and alpha zero both are one law";
   }
 }
 
@@ -152,8 +163,8 @@ TEST(ElastoViscoplastic, StressNeverPassesWhatTheFlowLawAllows) {
     ASSERT_LE(r.lambda, s.lambda + s.flow.flocculation_growth * s.dt);
     ASSERT_GE(r.rate, 0.0);
     const Relaxed<double> plain = relax<false>(s);
-    ASSERT_LE(plain.stress,
-              std::max(s.flow.yield_stress + s.flow.plastic_viscosity * plain.rate, 0.0) + 4.0 * unit * s.trial);
+    ASSERT_LE(plain.stress, std::max(s.flow.yield_stress + s.flow.plastic_viscosity * plain.rate, 0.0) +
+                                4.0 * unit * s.trial);
   }
 }
 
@@ -186,8 +197,9 @@ TEST(ElastoViscoplastic, FlocculationAtRestIsExact) {
 }
 
 TEST(ElastoViscoplastic, LambdaDecaysInSteadySimpleShearAsTheClosedForm) {
-  // d lambda / dt = A / tau0 - alpha rate lambda at a constant rate. In simple shear the elastic trial is the last stress
-  // plus G rate dt; after the elastic rise the plastic rate is the imposed one, to within the stress' slow fall over G.
+  // d lambda / dt = A / tau0 - alpha rate lambda at a constant rate. In simple shear the elastic trial is the
+  // last stress plus G rate dt; after the elastic rise the plastic rate is the imposed one, to within the
+  // stress' slow fall over G.
   FlowParameters<double> flow;
   flow.yield_stress = 50.0;
   flow.plastic_viscosity = 10.0;
@@ -200,7 +212,8 @@ TEST(ElastoViscoplastic, LambdaDecaysInSteadySimpleShearAsTheClosedForm) {
     const int steps = static_cast<int>(std::lround(5.0 / dt));
     double worst = 0.0;
     for (int i = 1; i <= steps; ++i) {
-      const auto r = ElastoViscoplastic<true>::relax<double>(flow, stress + modulus * imposed * dt, modulus * dt, dt, lambda, 0.0);
+      const auto r = ElastoViscoplastic<true>::relax<double>(flow, stress + modulus * imposed * dt,
+                                                             modulus * dt, dt, lambda, 0.0);
       stress = r.stress;
       lambda = r.lambda;
       const double rate = flow.deflocculation * imposed, floor = flow.flocculation_growth / rate;
@@ -223,8 +236,9 @@ TEST(ElastoViscoplastic, SinglePrecisionFollowsDouble) {
     flow.plastic_viscosity = static_cast<float>(s.flow.plastic_viscosity);
     flow.flocculation_growth = static_cast<float>(s.flow.flocculation_growth);
     flow.deflocculation = static_cast<float>(s.flow.deflocculation);
-    const auto r = ElastoViscoplastic<true>::relax<float>(flow, static_cast<float>(s.trial), static_cast<float>(s.shear),
-                                                          static_cast<float>(s.dt), static_cast<float>(s.lambda), 0.0f);
+    const auto r =
+        ElastoViscoplastic<true>::relax<float>(flow, static_cast<float>(s.trial), static_cast<float>(s.shear),
+                                               static_cast<float>(s.dt), static_cast<float>(s.lambda), 0.0f);
     ASSERT_TRUE(std::isfinite(r.rate) && std::isfinite(r.stress) && std::isfinite(r.lambda));
     const long double exact = exact_rate(s);
     if (exact == 0.0L) continue;
@@ -242,7 +256,8 @@ struct Regularised {
   double trial, shear;
   long double exact_rate() const {
     const auto balance = [&](long double x) {
-      return static_cast<long double>(trial) - (static_cast<long double>(shear) + flow.plastic_viscosity) * x +
+      return static_cast<long double>(trial) -
+             (static_cast<long double>(shear) + flow.plastic_viscosity) * x +
              flow.yield_stress * std::expm1(-static_cast<long double>(flow.regularisation_time) * x);
     };
     return root(balance, 0.0L, static_cast<long double>(trial) / shear);
@@ -259,8 +274,9 @@ struct Regularised {
   }
   /// How much a relative change of the trial moves the rate, relatively.
   double condition(double rate) const {
-    const double slope = shear + flow.plastic_viscosity +
-                         flow.yield_stress * flow.regularisation_time * std::exp(-flow.regularisation_time * rate);
+    const double slope =
+        shear + flow.plastic_viscosity +
+        flow.yield_stress * flow.regularisation_time * std::exp(-flow.regularisation_time * rate);
     return trial / (slope * rate);
   }
 };
@@ -285,15 +301,17 @@ TEST(Papanastasiou, IterationFindsTheRootFromEitherSide) {
     const Regularised r = random_regularised(random);
     const auto exact = static_cast<double>(r.exact_rate());
     const double allowed = 2e-14 * std::max(1.0, r.condition(exact));
-    for (const double start : {0.0, exact, exact * random.log_between(1e-6, 1.0), exact * random.log_between(1.0, 1e6), 1e12}) {
+    for (const double start :
+         {0.0, exact, exact * random.log_between(1e-6, 1.0), exact * random.log_between(1.0, 1e6), 1e12}) {
       const auto [rate, iterations] = r.iterated(start);
       most = std::max(most, iterations);
       worst = std::max(worst, std::abs(rate / exact - 1.0) / allowed);
-      ASSERT_NEAR(rate / exact, 1.0, allowed) << "from " << start << ", exact " << exact << ", m "
-                                               << r.flow.regularisation_time << ", trial over yield "
-                                               << r.trial / r.flow.yield_stress;
-      ASSERT_LE(iterations, 60) << "from " << start << ", exact " << exact << ", m " << r.flow.regularisation_time
-                                << ", trial over yield " << r.trial / r.flow.yield_stress;
+      ASSERT_NEAR(rate / exact, 1.0, allowed)
+          << "from " << start << ", exact " << exact << ", m " << r.flow.regularisation_time
+          << ", trial over yield " << r.trial / r.flow.yield_stress;
+      ASSERT_LE(iterations, 60) << "from " << start << ", exact " << exact << ", m "
+                                << r.flow.regularisation_time << ", trial over yield "
+                                << r.trial / r.flow.yield_stress;
     }
   }
   std::printf("    at most %d iterations, worst error %.2g of what is allowed\n", most, worst);
@@ -317,8 +335,10 @@ TEST(Papanastasiou, SinglePrecisionBalancesToTheKernelsTolerance) {
         if (!(std::abs(next.residual) / trial > 2e-6f)) break;
         rate = next.rate;
       }
-      ASSERT_LT(iterations, 60) << "from " << start << ", exact " << exact << ", m " << flow.regularisation_time;
-      ASSERT_NEAR(rate / exact, 1.0, 4e-6 * std::max(1.0, r.condition(exact))) << "from " << start << ", exact " << exact;
+      ASSERT_LT(iterations, 60) << "from " << start << ", exact " << exact << ", m "
+                                << flow.regularisation_time;
+      ASSERT_NEAR(rate / exact, 1.0, 4e-6 * std::max(1.0, r.condition(exact)))
+          << "from " << start << ", exact " << exact;
     }
   }
 }
@@ -328,9 +348,12 @@ TEST(Papanastasiou, StressOfTheRootIsTheFluidsOwn) {
   for (int i = 0; i < 10000; ++i) {
     const Regularised r = random_regularised(random);
     const double rate = r.iterated(0.0).first;
-    const double exact = r.flow.plastic_viscosity * rate - r.flow.yield_stress * std::expm1(-r.flow.regularisation_time * rate);
-    ASSERT_NEAR(papanastasiou_stress(r.flow, r.flow.yield_stress, rate), exact, 1e-14 * (r.flow.yield_stress + exact));
-    ASSERT_NEAR(r.trial - r.shear * rate, exact, 1e-12 * (r.trial + r.flow.yield_stress)) << "the step's balance";
+    const double exact = r.flow.plastic_viscosity * rate -
+                         r.flow.yield_stress * std::expm1(-r.flow.regularisation_time * rate);
+    ASSERT_NEAR(papanastasiou_stress(r.flow, r.flow.yield_stress, rate), exact,
+                1e-14 * (r.flow.yield_stress + exact));
+    ASSERT_NEAR(r.trial - r.shear * rate, exact, 1e-12 * (r.trial + r.flow.yield_stress))
+        << "the step's balance";
   }
 }
 
@@ -356,10 +379,12 @@ TEST(BiViscous, ReturnBalancesTheFluidsStressOnBothBranches) {
     flow.yield_stress = random.log_between(0.1, 1e4);
     flow.plastic_viscosity = random.log_between(1e-2, 1e3);
     flow.critical_shear_rate = random.log_between(1e-6, 10.0);
-    const double shear = random.log_between(1.0, 1e3), trial = flow.yield_stress * random.log_between(1e-3, 1e2);
+    const double shear = random.log_between(1.0, 1e3),
+                 trial = flow.yield_stress * random.log_between(1e-3, 1e2);
     const auto r = BiViscous<false>::relax<double>(flow, trial, shear, 1e-3, 0.0, 0.0);
     (r.rate < flow.critical_shear_rate ? slow : fast) += 1;
-    ASSERT_NEAR(r.stress, bi_viscous_stress(flow, flow.yield_stress, r.rate), 1e-13 * trial) << "rate " << r.rate;
+    ASSERT_NEAR(r.stress, bi_viscous_stress(flow, flow.yield_stress, r.rate), 1e-13 * trial)
+        << "rate " << r.rate;
     ASSERT_GE(r.rate, 0.0);
   }
   EXPECT_GT(slow, 10000);
@@ -373,7 +398,9 @@ TEST(BiViscous, IsContinuousAtTheCriticalRate) {
   flow.critical_shear_rate = 0.01;
   const double shear = 70.0;
   const double critical = (shear + flow.plastic_viscosity) * flow.critical_shear_rate + flow.yield_stress;
-  const auto at = [&](double trial) { return BiViscous<false>::relax<double>(flow, trial, shear, 1e-3, 0.0, 0.0); };
+  const auto at = [&](double trial) {
+    return BiViscous<false>::relax<double>(flow, trial, shear, 1e-3, 0.0, 0.0);
+  };
   EXPECT_NEAR(at(critical * (1.0 - 1e-12)).rate, 0.01, 1e-11);
   EXPECT_NEAR(at(critical * (1.0 + 1e-12)).rate, 0.01, 1e-11);
   EXPECT_NEAR(at(critical * (1.0 - 1e-12)).stress, at(critical * (1.0 + 1e-12)).stress, 1e-9);

@@ -32,7 +32,8 @@ FLOWREST_INLINE VelocityGradient<T, Dim> gradient_of(const Strain<T, Dim>& s, in
   return l;
 }
 
-/// Volume, pressure and the elastic trial. For an explicit fluid the "trial" is 2 D*, whose invariant is the shear rate.
+/// Volume, pressure and the elastic trial. For an explicit fluid the "trial" is 2 D*, whose invariant is the
+/// shear rate.
 template <class T, int Dim, bool Axisymmetric, StressRate Rate, bool Explicit>
 void make_trial(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   const T dt = step.step;
@@ -77,14 +78,16 @@ void relax_closed(const StepParameters<T>& step, const Strain<T, Dim>& s, int co
 #pragma omp simd
   for (int q = 0; q < count; ++q) {
     const T lambda = Law::thixotropic ? s.lambda[q] : T(0);
-    const Relaxed<T> r = Law::template relax<T>(step.flow, s.trial[q], s.shear[q], step.step, lambda, s.rate[q]);
+    const Relaxed<T> r =
+        Law::template relax<T>(step.flow, s.trial[q], s.shear[q], step.step, lambda, s.rate[q]);
     s.stress[q] = r.stress;
     s.rate[q] = r.rate;
     if constexpr (Law::thixotropic) s.lambda[q] = r.lambda;
   }
 }
 
-/// Staggered thixotropy of the fluids: lambda with the last step's rate, returned with the yield stress it gives.
+/// Staggered thixotropy of the fluids: lambda with the last step's rate, returned with the yield stress it
+/// gives.
 template <class T, int Dim, bool Thixotropic>
 FLOWREST_INLINE T fluid_yield(const StepParameters<T>& step, const Strain<T, Dim>& s, int q) {
   if constexpr (!Thixotropic) {
@@ -99,7 +102,8 @@ void flocculate(const StepParameters<T>& step, const Strain<T, Dim>& s, int coun
   const T dt = step.step;
 #pragma omp simd
   for (int q = 0; q < count; ++q)
-    s.lambda[q] = (s.lambda[q] + step.flow.flocculation_growth * dt) / (T(1) + dt * step.flow.deflocculation * s.rate[q]);
+    s.lambda[q] = (s.lambda[q] + step.flow.flocculation_growth * dt) /
+                  (T(1) + dt * step.flow.deflocculation * s.rate[q]);
 }
 
 /// Newton's method on all particles of a tile at once until the slowest has converged.
@@ -113,9 +117,11 @@ void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s,
 #pragma omp simd reduction(max : change)
     for (int q = 0; q < count; ++q) {
       const T before = s.rate[q];
-      const auto next = Law::template iterate<T>(step.flow, fluid_yield<T, Dim, Thixotropic>(step, s, q), s.trial[q], s.shear[q], before);
+      const auto next = Law::template iterate<T>(step.flow, fluid_yield<T, Dim, Thixotropic>(step, s, q),
+                                                 s.trial[q], s.shear[q], before);
       const T relative = (next.residual > T(0) ? next.residual : -next.residual) / (s.trial[q] + T(1e-30));
-      // A particle that balances stays as it is, so that its result does not depend on its neighbours in the tile.
+      // A particle that balances stays as it is, so that its result does not depend on its neighbours in the
+      // tile.
       s.rate[q] = relative > tolerance ? next.rate : before;
       change = change > relative ? change : relative;
     }
@@ -125,7 +131,8 @@ void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s,
   for (int q = 0; q < count; ++q) s.stress[q] = s.trial[q] - s.shear[q] * s.rate[q];
 }
 
-/// Explicit fluid: the stress of the present rate. `Regularised`: Papanastasiou, else bi-viscous or Newtonian.
+/// Explicit fluid: the stress of the present rate. `Regularised`: Papanastasiou, else bi-viscous or
+/// Newtonian.
 template <class T, int Dim, bool Regularised, bool Thixotropic>
 void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   if constexpr (Thixotropic) flocculate(step, s, count);
@@ -134,7 +141,8 @@ void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int 
     const T rate = s.trial[q];
     const T yield = fluid_yield<T, Dim, Thixotropic>(step, s, q);
     s.rate[q] = rate;
-    s.stress[q] = Regularised ? papanastasiou_stress(step.flow, yield, rate) : bi_viscous_stress(step.flow, yield, rate);
+    s.stress[q] = Regularised ? papanastasiou_stress(step.flow, yield, rate)
+                              : bi_viscous_stress(step.flow, yield, rate);
   }
 }
 
@@ -142,20 +150,31 @@ template <class T, int Dim>
 void relax(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   if (step.explicit_fluid) {
     switch (step.law) {
-      case Law::papanastasiou: return relax_explicit<T, Dim, true, false>(step, s, count);
-      case Law::papanastasiou_thixotropic: return relax_explicit<T, Dim, true, true>(step, s, count);
-      case Law::bi_viscous_thixotropic: return relax_explicit<T, Dim, false, true>(step, s, count);
-      default: return relax_explicit<T, Dim, false, false>(step, s, count);
+      case Law::papanastasiou:
+        return relax_explicit<T, Dim, true, false>(step, s, count);
+      case Law::papanastasiou_thixotropic:
+        return relax_explicit<T, Dim, true, true>(step, s, count);
+      case Law::bi_viscous_thixotropic:
+        return relax_explicit<T, Dim, false, true>(step, s, count);
+      default:
+        return relax_explicit<T, Dim, false, false>(step, s, count);
     }
   }
   switch (step.law) {
-    case Law::elasto_viscoplastic: return relax_closed<T, Dim, ElastoViscoplastic<false>>(step, s, count);
-    case Law::elasto_viscoplastic_thixotropic: return relax_closed<T, Dim, ElastoViscoplastic<true>>(step, s, count);
-    case Law::papanastasiou: return relax_papanastasiou<T, Dim, false>(step, s, count);
-    case Law::papanastasiou_thixotropic: return relax_papanastasiou<T, Dim, true>(step, s, count);
-    case Law::bi_viscous: return relax_closed<T, Dim, BiViscous<false>>(step, s, count);
-    case Law::bi_viscous_thixotropic: return relax_closed<T, Dim, BiViscous<true>>(step, s, count);
-    case Law::newtonian: return relax_closed<T, Dim, Newtonian>(step, s, count);
+    case Law::elasto_viscoplastic:
+      return relax_closed<T, Dim, ElastoViscoplastic<false>>(step, s, count);
+    case Law::elasto_viscoplastic_thixotropic:
+      return relax_closed<T, Dim, ElastoViscoplastic<true>>(step, s, count);
+    case Law::papanastasiou:
+      return relax_papanastasiou<T, Dim, false>(step, s, count);
+    case Law::papanastasiou_thixotropic:
+      return relax_papanastasiou<T, Dim, true>(step, s, count);
+    case Law::bi_viscous:
+      return relax_closed<T, Dim, BiViscous<false>>(step, s, count);
+    case Law::bi_viscous_thixotropic:
+      return relax_closed<T, Dim, BiViscous<true>>(step, s, count);
+    case Law::newtonian:
+      return relax_closed<T, Dim, Newtonian>(step, s, count);
   }
 }
 

@@ -14,8 +14,9 @@ namespace {
 /// RunState as a row of numbers, and back: one list of members serves both.
 template <class State, class Use>
 void each_member(State& s, Use use) {
-  for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated, &s.work, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles, &s.snapshots,
-                       &s.checkpoints})
+  for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated,
+                       &s.work, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles,
+                       &s.snapshots, &s.checkpoints})
     use(*member);
 }
 
@@ -32,9 +33,11 @@ void write_checkpoint(const std::filesystem::path& directory, const Checkpoint& 
   std::vector<std::int32_t> cells;
   for (const auto& cell : c.solver.cells) cells.insert(cells.end(), cell.begin(), cell.end());
   file.write("/cells", cells, 3);
-  const std::array<std::int32_t, 2> sizes = {c.solver.tile_capacity, static_cast<std::int32_t>(c.solver.arrays.size())};
+  const std::array<std::int32_t, 2> sizes = {c.solver.tile_capacity,
+                                             static_cast<std::int32_t>(c.solver.arrays.size())};
   file.write("/sizes", sizes);
-  for (std::size_t k = 0; k < c.solver.arrays.size(); ++k) file.write(fmt::format("/array{:02}", k), c.solver.arrays[k]);
+  for (std::size_t k = 0; k < c.solver.arrays.size(); ++k)
+    file.write(fmt::format("/array{:02}", k), c.solver.arrays[k]);
   file.commit();
 }
 
@@ -44,11 +47,16 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory
   Checkpoint c;
   const std::vector<double> run = file.read_doubles("/run");
   std::size_t next = 0;
-  each_member(c.run, [&](double& v) { v = next < run.size() ? run[next] : 0.0; ++next; });
+  each_member(c.run, [&](double& v) {
+    v = next < run.size() ? run[next] : 0.0;
+    ++next;
+  });
   const auto damaged = [&](const std::string& what) {
-    return runs::RunError(fmt::format("{}: {}; start the run over without --resume", file_in(directory).string(), what));
+    return runs::RunError(
+        fmt::format("{}: {}; start the run over without --resume", file_in(directory).string(), what));
   };
-  if (next != run.size()) throw damaged(fmt::format("holds {} run values, {} are expected", run.size(), next));
+  if (next != run.size())
+    throw damaged(fmt::format("holds {} run values, {} are expected", run.size(), next));
   c.scene = file.read_text("/", "scene");
   const auto cells = file.read_integers("/cells");
   c.solver.cells.resize(cells.size() / 3);
@@ -58,7 +66,8 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory
   c.solver.tile_capacity = sizes[0];
   for (int k = 0; k < sizes[1]; ++k) {
     c.solver.arrays.push_back(file.read_doubles(fmt::format("/array{:02}", k)));
-    if (c.solver.arrays.back().size() != c.solver.cells.size()) throw damaged(fmt::format("array {} has the wrong length", k));
+    if (c.solver.arrays.back().size() != c.solver.cells.size())
+      throw damaged(fmt::format("array {} has the wrong length", k));
   }
   return c;
 }

@@ -11,17 +11,17 @@ namespace flowrest::mpm {
 
 /// What a run knows beside its particles; with them it goes on bit for bit.
 struct RunState {
-  double time = 0.0;             ///< s
+  double time = 0.0;  ///< s
   double steps = 0.0;
-  double step = 0.0;             ///< s, the last one
-  double largest_speed = 0.0;    ///< m/s, of the last step
-  double largest_pressure = 0.0; ///< Pa
-  double dissipated = 0.0;       ///< J, whole body
-  double work = 0.0;             ///< J, done by the driving force
-  double initial_energy = 0.0;   ///< J
-  double calm_since = -1.0;      ///< s, since when the rest bound has held; -1 where it does not
-  double cpu = 0.0;              ///< s, spent so far
-  double wall = 0.0;             ///< s
+  double step = 0.0;              ///< s, the last one
+  double largest_speed = 0.0;     ///< m/s, of the last step
+  double largest_pressure = 0.0;  ///< Pa
+  double dissipated = 0.0;        ///< J, whole body
+  double work = 0.0;              ///< J, done by the driving force
+  double initial_energy = 0.0;    ///< J
+  double calm_since = -1.0;       ///< s, since when the rest bound has held; -1 where it does not
+  double cpu = 0.0;               ///< s, spent so far
+  double wall = 0.0;              ///< s
   double histories = 0.0, profiles = 0.0, snapshots = 0.0, checkpoints = 0.0;  ///< outputs made so far
 };
 

@@ -29,7 +29,8 @@ double quantile(std::vector<Weighted>& values, double share) {
 /// Sums common to every kind of scene.
 class Sums {
  public:
-  Sums(const scenes::Scene& scene, double factor) : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor) {}
+  Sums(const scenes::Scene& scene, double factor)
+      : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor) {}
 
   void add(const ParticleBatch& b, std::size_t vertical) {
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -63,14 +64,16 @@ class Sums {
 
  private:
   double gravity_, density_, factor_;
-  double kinetic_ = 0.0, potential_ = 0.0, elastic_ = 0.0, mass_ = 0.0, volume_ = 0.0, momentum_ = 0.0, flocculation_ = 0.0;
+  double kinetic_ = 0.0, potential_ = 0.0, elastic_ = 0.0, mass_ = 0.0, volume_ = 0.0, momentum_ = 0.0,
+         flocculation_ = 0.0;
   double highest_ = 0.0;
   std::vector<Weighted> rates_;
 };
 
 }  // namespace
 
-Gauges::Gauges(const scenes::Scene& scene) : scene_(scene), factor_(whole_body_factor(scene)), cell_(cell_size(scene)) {}
+Gauges::Gauges(const scenes::Scene& scene)
+    : scene_(scene), factor_(whole_body_factor(scene)), cell_(cell_size(scene)) {}
 
 Measures Gauges::measure(Solver& solver) const {
   return scene_.kind == scenes::Kind::duct ? measure_duct(solver) : measure_slump(solver);
@@ -85,7 +88,8 @@ Measures Gauges::measure_slump(Solver& solver) const {
   solver.visit([&](const ParticleBatch& b) {
     sums.add(b, vertical);
     for (std::size_t i = 0; i < b.count; ++i) {
-      const double radius = vertical == 2 ? std::hypot(b.position[0][i], b.position[1][i]) : std::abs(b.position[0][i]);
+      const double radius =
+          vertical == 2 ? std::hypot(b.position[0][i], b.position[1][i]) : std::abs(b.position[0][i]);
       farthest = std::max(farthest, radius);
       radii.emplace_back(radius, b.mass[i]);
       volumes.emplace_back(radius, b.volume[i]);
@@ -140,10 +144,12 @@ std::vector<std::string> Gauges::columns() const {
   if (scene_.kind == scenes::Kind::duct) {
     names.insert(names.end(), {"plug_velocity_m_s", "mean_velocity_m_s"});
   } else {
-    names.insert(names.end(), {"spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm"});
+    names.insert(names.end(),
+                 {"spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm"});
   }
-  names.insert(names.end(), {"volume_m3", "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J", "elastic_energy_J", "dissipated_energy_J",
-                             "numerical_energy_J", "shear_rate_p99_1_s", "time_step_s"});
+  names.insert(names.end(), {"volume_m3", "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J",
+                             "elastic_energy_J", "dissipated_energy_J", "numerical_energy_J",
+                             "shear_rate_p99_1_s", "time_step_s"});
   if (scene_.thixotropy) names.push_back("flocculation_mean");
   return names;
 }
@@ -153,12 +159,14 @@ std::vector<double> Gauges::row(double time, double step, const Measures& m) con
   if (scene_.kind == scenes::Kind::duct) {
     row.insert(row.end(), {headline_value(m), m.mean_velocity});
   } else {
-    for (const double threshold : {0.003, 0.0015, 0.006}) row.push_back(1e3 * runs::spread(m.coordinate, m.value, threshold));
+    for (const double threshold : {0.003, 0.0015, 0.006})
+      row.push_back(1e3 * runs::spread(m.coordinate, m.value, threshold));
     row.push_back(1e3 * m.spread_mass_995);
     row.push_back(1e3 * runs::centre_depth(m.coordinate, m.value));
   }
   const Energies& e = m.energies;
-  row.insert(row.end(), {m.volume, m.volume_at_rest, e.kinetic, e.potential, e.elastic, e.dissipated, e.numerical, m.shear_rate_p99, step});
+  row.insert(row.end(), {m.volume, m.volume_at_rest, e.kinetic, e.potential, e.elastic, e.dissipated,
+                         e.numerical, m.shear_rate_p99, step});
   if (scene_.thixotropy) row.push_back(m.flocculation_mean);
   return row;
 }

@@ -10,8 +10,8 @@
 
 namespace flowrest::mpm {
 
-/// Energies of the whole body, J. `numerical` is what the discretisation has lost (positive) or made (negative): the
-/// initial energy and the work of the driving force less all the others.
+/// Energies of the whole body, J. `numerical` is what the discretisation has lost (positive) or made
+/// (negative): the initial energy and the work of the driving force less all the others.
 struct Energies {
   double kinetic = 0.0, potential = 0.0, elastic = 0.0, dissipated = 0.0, numerical = 0.0;
 };
@@ -19,15 +19,15 @@ struct Energies {
 /// What is measured of the particles at one time.
 struct Measures {
   Energies energies;
-  double volume = 0.0;           ///< m3
-  double volume_at_rest = 0.0;   ///< m3, what the mass fills without pressure
-  double shear_rate_p99 = 0.0;   ///< 1/s, exceeded by one per cent of the mass
+  double volume = 0.0;          ///< m3
+  double volume_at_rest = 0.0;  ///< m3, what the mass fills without pressure
+  double shear_rate_p99 = 0.0;  ///< 1/s, exceeded by one per cent of the mass
   double flocculation_mean = 0.0;
-  double mean_velocity = 0.0;    ///< m/s along the first axis
-  double farthest = 0.0;         ///< m, largest radius (slump)
-  double highest = 0.0;          ///< m
+  double mean_velocity = 0.0;             ///< m/s along the first axis
+  double farthest = 0.0;                  ///< m, largest radius (slump)
+  double highest = 0.0;                   ///< m
   std::vector<double> coordinate, value;  ///< the profile: radius and depth, or height and velocity
-  double spread_mass_995 = 0.0;  ///< m, twice the radius that holds 99.5 % of the mass (slump)
+  double spread_mass_995 = 0.0;           ///< m, twice the radius that holds 99.5 % of the mass (slump)
 };
 
 /// Measures a scene's particles and lays the results out as rows of history.csv.

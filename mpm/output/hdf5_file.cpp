@@ -49,7 +49,9 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
 }
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::move(other.temporary_)), file_(std::exchange(other.file_, -1)) {}
+    : path_(std::move(other.path_)),
+      temporary_(std::move(other.temporary_)),
+      file_(std::exchange(other.file_, -1)) {}
 
 Hdf5File::~Hdf5File() {
   if (file_ >= 0) {
@@ -68,10 +70,12 @@ void Hdf5File::group(const std::string& path) {
   if (!made.valid()) fail("cannot hold the group " + path);
 }
 
-void Hdf5File::write(const std::string& path, hid_t type, const void* data, std::size_t count, std::size_t columns) {
+void Hdf5File::write(const std::string& path, hid_t type, const void* data, std::size_t count,
+                     std::size_t columns) {
   const hsize_t size[2] = {columns ? count / columns : count, columns};
   const Handle space(H5Screate_simple(columns ? 2 : 1, size, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   if (!set.valid() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     fail("cannot hold the dataset " + path + " (is the disk full?)");
 }
@@ -92,12 +96,15 @@ void Hdf5File::write(const std::string& path, std::span<const std::uint8_t> v, s
   write(path, H5T_NATIVE_UINT8, v.data(), v.size(), columns);
 }
 
-void Hdf5File::attribute(const std::string& group, const std::string& name, std::span<const std::int64_t> values) {
+void Hdf5File::attribute(const std::string& group, const std::string& name,
+                         std::span<const std::int64_t> values) {
   const hsize_t size = values.size();
   const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Handle made(H5Acreate_by_name(file_, group.c_str(), name.c_str(), H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Handle made(H5Acreate_by_name(file_, group.c_str(), name.c_str(), H5T_NATIVE_INT64, space,
+                                      H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                     H5Aclose);
-  if (!made.valid() || H5Awrite(made, H5T_NATIVE_INT64, values.data()) < 0) fail("cannot hold the attribute " + name);
+  if (!made.valid() || H5Awrite(made, H5T_NATIVE_INT64, values.data()) < 0)
+    fail("cannot hold the attribute " + name);
 }
 
 void Hdf5File::attribute(const std::string& group, const std::string& name, const std::string& text) {
@@ -105,7 +112,9 @@ void Hdf5File::attribute(const std::string& group, const std::string& name, cons
   H5Tset_size(type, text.empty() ? 1 : text.size());
   H5Tset_strpad(type, H5T_STR_NULLPAD);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate_by_name(file_, group.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle made(H5Acreate_by_name(file_, group.c_str(), name.c_str(), type, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
   if (!made.valid() || H5Awrite(made, type, text.c_str()) < 0) fail("cannot hold the attribute " + name);
 }
 
@@ -124,18 +133,21 @@ bool read_all(hid_t file, const std::string& path, hid_t type, std::vector<T>& o
 
 std::vector<double> Hdf5File::read_doubles(const std::string& path) const {
   std::vector<double> out;
-  if (!read_all(file_, path, H5T_NATIVE_DOUBLE, out)) fail("the dataset " + path + " is missing or unreadable");
+  if (!read_all(file_, path, H5T_NATIVE_DOUBLE, out))
+    fail("the dataset " + path + " is missing or unreadable");
   return out;
 }
 
 std::vector<std::int32_t> Hdf5File::read_integers(const std::string& path) const {
   std::vector<std::int32_t> out;
-  if (!read_all(file_, path, H5T_NATIVE_INT32, out)) fail("the dataset " + path + " is missing or unreadable");
+  if (!read_all(file_, path, H5T_NATIVE_INT32, out))
+    fail("the dataset " + path + " is missing or unreadable");
   return out;
 }
 
 std::string Hdf5File::read_text(const std::string& group, const std::string& name) const {
-  const Handle attribute(H5Aopen_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Aopen_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
   if (!attribute.valid()) fail("the attribute " + name + " is missing");
   const Handle type(H5Aget_type(attribute), H5Tclose);
   std::string text(H5Tget_size(type), '\0');

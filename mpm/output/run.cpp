@@ -22,8 +22,8 @@ namespace flowrest::mpm {
 
 namespace {
 
-/// The growth of the spread still to come is at most D eps / 5, eps the overstress: from D ~ tau0^(-1/5) (Yu et al. 2026,
-/// Eq. 51), every part still yielding at most eps above its yield stress.
+/// The growth of the spread still to come is at most D eps / 5, eps the overstress: from D ~ tau0^(-1/5) (Yu
+/// et al. 2026, Eq. 51), every part still yielding at most eps above its yield stress.
 constexpr double growth_per_overstress = 0.2;
 /// More energy made by the discretisation than this share of the energy scale is an instability.
 constexpr double energy_made_allowed = 0.05;
@@ -45,7 +45,8 @@ class MpmRun {
         writer_(checkpoint ? runs::RunWriter::resume(options.directory, scene, checkpoint->run.time)
                            : runs::RunWriter(options.directory, scene, "mpm")),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.time : -1.0),
-        progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)), scene.time.end, options.quiet) {
+        progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
+                  scene.time.end, options.quiet) {
     cpu_begin_ = runs::cpu_seconds();
     wall_begin_ = seconds_now();
     if (checkpoint) {
@@ -86,7 +87,9 @@ class MpmRun {
       gauge();
     }
     while (state_.time < scene_.time.end) {
-      if (options_.interrupted()) return stop(runs::Status::interrupted, "interrupted; go on with: flowrest mpm --resume " + options_.directory.string());
+      if (options_.interrupted())
+        return stop(runs::Status::interrupted,
+                    "interrupted; go on with: flowrest mpm --resume " + options_.directory.string());
       advance();
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= scene_.time.end) {
         gauge();
@@ -99,13 +102,17 @@ class MpmRun {
 
   bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
 
-  /// The step: fixed, or Courant-controlled with the stiffest pressure's sound speed and the largest speed (NUMERICS: the
-  /// stable limit counts |v| too), shortened a little so that it lands on the next row of the history.
+  /// The step: fixed, or Courant-controlled with the stiffest pressure's sound speed and the largest speed
+  /// (NUMERICS: the stable limit counts |v| too), shortened a little so that it lands on the next row of the
+  /// history.
   double next_step() const {
-    const double stiffening = 1.0 + settings_.state.exponent * std::max(state_.largest_pressure, 0.0) / settings_.state.bulk_modulus;
+    const double stiffening = 1.0 + settings_.state.exponent * std::max(state_.largest_pressure, 0.0) /
+                                        settings_.state.bulk_modulus;
     const double sound = scene_.material.longitudinal_speed() * std::sqrt(stiffening);
-    double step = scene_.mpm.time_step ? *scene_.mpm.time_step : scene_.mpm.cfl * settings_.cell / (sound + state_.largest_speed);
-    if (!scene_.mpm.time_step && settings_.explicit_fluid) step = std::min(step, scenes::step_limits(scene_).viscous);
+    double step = scene_.mpm.time_step ? *scene_.mpm.time_step
+                                       : scene_.mpm.cfl * settings_.cell / (sound + state_.largest_speed);
+    if (!scene_.mpm.time_step && settings_.explicit_fluid)
+      step = std::min(step, scenes::step_limits(scene_).viscous);
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
     const double left = target - state_.time;
     if (step >= left * (1.0 - 1e-12)) return left;
@@ -120,13 +127,16 @@ class MpmRun {
     state_.largest_speed = result.largest_speed;
     state_.largest_pressure = result.largest_pressure;
     state_.dissipated += factor_ * result.dissipated;
-    if (!scene_.forces.body_force.empty()) state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
+    if (!scene_.forces.body_force.empty())
+      state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
     state_.time = step >= target - state_.time ? target : state_.time + step;
     const double sound = scene_.material.longitudinal_speed();
     if (result.largest_speed > 2.0 * sound + free_fall_speed())
-      throw runs::NumericsError(fmt::format("a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
-                                            "the step or the material is unstable", result.largest_speed, sound));
+      throw runs::NumericsError(fmt::format(
+          "a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
+          "the step or the material is unstable",
+          result.largest_speed, sound));
   }
 
   double free_fall_speed() const {
@@ -150,13 +160,19 @@ class MpmRun {
   void check_bounds() const {
     const double scale = std::max({std::abs(state_.initial_energy), state_.work, state_.dissipated});
     if (measures_.energies.numerical < -energy_made_allowed * scale)
-      throw runs::NumericsError(fmt::format("the discretisation has made {:.3g} J of {:.3g} J: the step is unstable", -measures_.energies.numerical, scale));
+      throw runs::NumericsError(
+          fmt::format("the discretisation has made {:.3g} J of {:.3g} J: the step is unstable",
+                      -measures_.energies.numerical, scale));
     if (scene_.kind != scenes::Kind::slump) return;
     const auto& g = scene_.slump();
     if (measures_.farthest > g.domain_radius)
-      throw runs::NumericsError(fmt::format("the material has reached geometry.domain_radius = {} m at {:.4g} s: enlarge the domain", g.domain_radius, state_.time));
+      throw runs::NumericsError(fmt::format(
+          "the material has reached geometry.domain_radius = {} m at {:.4g} s: enlarge the domain",
+          g.domain_radius, state_.time));
     if (measures_.highest > g.domain_height)
-      throw runs::NumericsError(fmt::format("the material has risen to geometry.domain_height = {} m at {:.4g} s", g.domain_height, state_.time));
+      throw runs::NumericsError(
+          fmt::format("the material has risen to geometry.domain_height = {} m at {:.4g} s", g.domain_height,
+                      state_.time));
   }
 
   void output() {
@@ -181,20 +197,24 @@ class MpmRun {
   }
 
   /// A fluid is never at rest, and nothing bounds the growth of what has no yield stress.
-  bool can_rest() const { return scene_.material.model == scenes::Model::elasto_viscoplastic && settings_.flow.yield_stress > 0.0; }
+  bool can_rest() const {
+    return scene_.material.model == scenes::Model::elasto_viscoplastic && settings_.flow.yield_stress > 0.0;
+  }
 
   /// Bound on the relative growth of the spread still to come.
   double growth_to_come() const {
-    return growth_per_overstress * settings_.flow.plastic_viscosity * measures_.shear_rate_p99 / settings_.flow.yield_stress;
+    return growth_per_overstress * settings_.flow.plastic_viscosity * measures_.shear_rate_p99 /
+           settings_.flow.yield_stress;
   }
 
-  /// The bound counts once it has held for twice the time in which the driving force would move the material over its own
-  /// height: at the start nothing yields yet, and that is not rest.
+  /// The bound counts once it has held for twice the time in which the driving force would move the material
+  /// over its own height: at the start nothing yields yet, and that is not rest.
   double time_to_trust_rest() const {
     const auto a = acceleration_at(scene_, state_.time);
     double driving = 0.0;
     for (const double c : a) driving = std::max(driving, std::abs(c));
-    const double length = scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : scene_.duct().height;
+    const double length =
+        scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : scene_.duct().height;
     return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
   }
 
@@ -206,7 +226,9 @@ class MpmRun {
     }
   }
 
-  bool has_come_to_rest() const { return state_.calm_since >= 0.0 && state_.time - state_.calm_since >= time_to_trust_rest(); }
+  bool has_come_to_rest() const {
+    return state_.calm_since >= 0.0 && state_.time - state_.calm_since >= time_to_trust_rest();
+  }
   bool at_rest() const { return scene_.time.stop_at_rest && has_come_to_rest(); }
 
   void checkpoint() {
@@ -237,24 +259,31 @@ class MpmRun {
     info["wall_s"] = wall;
     info["cpu_s"] = cpu;
     info["particle_steps_per_cpu_s"] = cpu > 0.0 ? particle_steps / cpu : 0.0;
-    info["bytes_per_particle"] = static_cast<double>(solver_->bytes()) / static_cast<double>(solver_->particle_count());
+    info["bytes_per_particle"] =
+        static_cast<double>(solver_->bytes()) / static_cast<double>(solver_->particle_count());
     const StageTimes& t = solver_->stage_times();
-    info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid}, {"nodes", t.nodes},
-                            {"grid_to_particles", t.grid_to_particles}, {"sorting", t.sorting}};
+    info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid},
+                            {"nodes", t.nodes},
+                            {"grid_to_particles", t.grid_to_particles},
+                            {"sorting", t.sorting}};
     info["growth_to_come"] = can_rest() ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
-    info["rest_time_s"] = has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
+    info["rest_time_s"] =
+        has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
   }
 
   /// "sound", or what makes the run's numbers doubtful.
   std::string verdict() const {
     const scenes::StepLimits limits = scenes::step_limits(scene_);
     if (state_.step > limits.viscous)
-      return fmt::format("noisy: the explicit fluid's step of {:.2g} s is past its viscous limit of {:.2g} s", state_.step, limits.viscous);
+      return fmt::format("noisy: the explicit fluid's step of {:.2g} s is past its viscous limit of {:.2g} s",
+                         state_.step, limits.viscous);
     if (scene_.mpm.time_step && *scene_.mpm.time_step > limits.largest())
-      return fmt::format("noisy: the step of {:.2g} s is past the stable limit of {:.2g} s", *scene_.mpm.time_step, limits.largest());
+      return fmt::format("noisy: the step of {:.2g} s is past the stable limit of {:.2g} s",
+                         *scene_.mpm.time_step, limits.largest());
     if (scene_.kind == scenes::Kind::slump) {
       const double cells = runs::centre_depth(measures_.coordinate, measures_.value) / settings_.cell;
-      if (cells < cells_over_depth_wanted) return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
+      if (cells < cells_over_depth_wanted)
+        return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
     }
     return "sound";
   }
@@ -273,23 +302,27 @@ class MpmRun {
 
   void return_after_failure(const std::string& reason) {
     summarise();
-    writer_.finish(runs::Status::failed, fmt::format("at {:.6g} s: {}", state_.time, reason), "noisy: the numerics failed");
+    writer_.finish(runs::Status::failed, fmt::format("at {:.6g} s: {}", state_.time, reason),
+                   "noisy: the numerics failed");
     progress_.finish("failed");
   }
 
   void print_summary(runs::Status status) {
     const auto& info = writer_.info();
     const double wall = info["wall_s"], cpu = info["cpu_s"], steps = state_.steps;
-    progress_.finish(fmt::format("{} at {:.2f} s, {}; {:.0f} steps/s, {:.3g} particle-steps per CPU s, {:.3g} simulated s per hour",
-                                 runs::to_string(status), state_.time, gauges_.headline(measures_), steps / wall,
-                                 info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
+    progress_.finish(fmt::format(
+        "{} at {:.2f} s, {}; {:.0f} steps/s, {:.3g} particle-steps per CPU s, {:.3g} simulated s per hour",
+        runs::to_string(status), state_.time, gauges_.headline(measures_), steps / wall,
+        info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
     if (options_.quiet) return;
     const StageTimes& t = solver_->stage_times();
     const double listed = t.particles_to_grid + t.nodes + t.grid_to_particles + t.sorting;
-    fmt::print(stderr, "  wall time per stage ({} threads, {}, {:.2f} CPU s):\n", solver_->threads(), solver_->instruction_set(), cpu);
-    for (const auto& [name, seconds] : {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
-                                        std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
-                                        std::pair{"gauges and output", std::max(0.0, wall - listed)}})
+    fmt::print(stderr, "  wall time per stage ({} threads, {}, {:.2f} CPU s):\n", solver_->threads(),
+               solver_->instruction_set(), cpu);
+    for (const auto& [name, seconds] :
+         {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
+          std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
+          std::pair{"gauges and output", std::max(0.0, wall - listed)}})
       fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
   }
 
@@ -309,7 +342,9 @@ class MpmRun {
 
 }  // namespace
 
-RunResult run(const scenes::Scene& scene, const RunOptions& options) { return MpmRun(scene, options, std::nullopt).run(); }
+RunResult run(const scenes::Scene& scene, const RunOptions& options) {
+  return MpmRun(scene, options, std::nullopt).run();
+}
 
 RunResult resume(const RunOptions& options) {
   if (const auto checkpoint = read_checkpoint(options.directory)) {
@@ -319,8 +354,10 @@ RunResult resume(const RunOptions& options) {
   std::ifstream file(options.directory / "run.json");
   const auto info = nlohmann::json::parse(file, nullptr, false);
   if (info.is_discarded() || info.value("solver", "") != "mpm" || !info.contains("resolved_toml"))
-    throw runs::RunError(fmt::format("{}: is not an MPM run that can be gone on with: neither a checkpoint.h5 nor a run.json of flowrest mpm",
-                                     options.directory.string()));
+    throw runs::RunError(
+        fmt::format("{}: is not an MPM run that can be gone on with: neither a checkpoint.h5 nor a run.json "
+                    "of flowrest mpm",
+                    options.directory.string()));
   return run(scenes::parse_scene(info["resolved_toml"], options.directory / "run.json"), options);
 }
 

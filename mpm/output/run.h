@@ -11,8 +11,8 @@ namespace flowrest::mpm {
 struct RunOptions {
   std::filesystem::path directory;  ///< the run directory
   bool quiet = false;
-  bool resume = false;              ///< go on from the directory's checkpoint
-  std::string instruction_set;      ///< empty: the best this machine runs
+  bool resume = false;          ///< go on from the directory's checkpoint
+  std::string instruction_set;  ///< empty: the best this machine runs
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };
 };
@@ -20,8 +20,8 @@ struct RunOptions {
 struct RunResult {
   runs::Status status = runs::Status::running;
   std::string reason;
-  double time = 0.0;        ///< s, simulated
-  double headline = 0.0;    ///< the scene's main gauge at the end (spread in mm, plug velocity in m/s)
+  double time = 0.0;      ///< s, simulated
+  double headline = 0.0;  ///< the scene's main gauge at the end (spread in mm, plug velocity in m/s)
 };
 
 /// Runs a scene to its end (rest, end time, interruption) and leaves the run directory.

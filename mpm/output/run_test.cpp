@@ -52,11 +52,13 @@ class MpmRun : public RunTest {};
 TEST_F(MpmRun, HistoryHasItsColumnsAndARowEveryInterval) {
   const auto run = run_and_read(tiny_slump());
   EXPECT_THAT(run.history.names,
-              ElementsAre("time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm", "volume_m3",
-                          "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J", "elastic_energy_J",
-                          "dissipated_energy_J", "numerical_energy_J", "shear_rate_p99_1_s", "time_step_s"));
+              ElementsAre("time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm",
+                          "height_mm", "volume_m3", "volume_at_rest_m3", "kinetic_energy_J",
+                          "potential_energy_J", "elastic_energy_J", "dissipated_energy_J",
+                          "numerical_energy_J", "shear_rate_p99_1_s", "time_step_s"));
   ASSERT_EQ(run.history.rows(), 7u);
-  for (std::size_t i = 0; i < 7; ++i) EXPECT_NEAR(run.history.at("time_s")[i], 0.05 * static_cast<double>(i), 1e-12);
+  for (std::size_t i = 0; i < 7; ++i)
+    EXPECT_NEAR(run.history.at("time_s")[i], 0.05 * static_cast<double>(i), 1e-12);
   ASSERT_EQ(run.profiles.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.profiles[i].time, 0.1 * static_cast<double>(i), 1e-12);
   EXPECT_EQ(run.status(), runs::Status::end_time);
@@ -65,33 +67,38 @@ TEST_F(MpmRun, HistoryHasItsColumnsAndARowEveryInterval) {
 }
 
 TEST_F(MpmRun, ThixotropyAddsItsColumn) {
-  const auto run = run_and_read(tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
-                                            "thixotropy.initial_flocculation=1.8", "time.end=0.05"}));
+  const auto run = run_and_read(
+      tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                  "thixotropy.initial_flocculation=1.8", "time.end=0.05"}));
   EXPECT_EQ(run.history.names.back(), "flocculation_mean");
   EXPECT_NEAR(run.history.at("flocculation_mean")[0], 1.8, 1e-12);
 }
 
 TEST_F(MpmRun, ADuctHasItsOwnGauges) {
-  const auto scene = scenes::load_scene("poiseuille-step-down", {{"mpm.cell=0.02", "time.end=0.04", "mpm.threads=1"}, {}});
+  const auto scene =
+      scenes::load_scene("poiseuille-step-down", {{"mpm.cell=0.02", "time.end=0.04", "mpm.threads=1"}, {}});
   const auto run = run_and_read(scene);
   EXPECT_EQ(run.history.names[1], "plug_velocity_m_s");
   EXPECT_EQ(run.history.names[2], "mean_velocity_m_s");
-  // The middle does not know of the walls before a shear wave (4.1 m/s) has come: until then it falls along the duct.
+  // The middle does not know of the walls before a shear wave (4.1 m/s) has come: until then it falls along
+  // the duct.
   EXPECT_NEAR(run.history.at("plug_velocity_m_s").back(), 2000.0 / 2000.0 * 0.04, 1e-4);
 }
 
 TEST_F(MpmRun, AProfilesVolumeIsTheVolumeOfTheParticles) {
   for (const std::string dimension : {"axisymmetric", "quarter", "full", "plane"}) {
     const bool solid = dimension == "quarter" || dimension == "full";
-    const auto run = run_and_read(tiny_slump({"geometry.dimension=" + dimension, "time.end=0.1",
-                                              solid ? "mpm.particles_per_cell=8" : "mpm.particles_per_cell=9"}),
-                                  dimension);
+    const auto run =
+        run_and_read(tiny_slump({"geometry.dimension=" + dimension, "time.end=0.1",
+                                 solid ? "mpm.particles_per_cell=8" : "mpm.particles_per_cell=9"}),
+                     dimension);
     const auto& profile = run.profiles.back();
     double volume = 0.0;
     for (std::size_t i = 0; i < profile.value.size(); ++i) {
       const double inner = profile.coordinate[i] - 0.01, outer = profile.coordinate[i] + 0.01;
-      volume += profile.value[i] *
-                (dimension == "plane" ? 2.0 * (outer - inner) : std::numbers::pi * (outer * outer - inner * inner));
+      volume +=
+          profile.value[i] *
+          (dimension == "plane" ? 2.0 * (outer - inner) : std::numbers::pi * (outer * outer - inner * inner));
     }
     const double expected = run.history.at("volume_m3").back();
     EXPECT_NEAR(volume, expected, 1e-12 * expected) << dimension;
@@ -104,7 +111,8 @@ TEST_F(MpmRun, EveryFigureOfTheWholeBodyIsTheSameForAQuarterAndTheFullCone) {
   std::vector<runs::Run> both;
   for (const std::string dimension : {"quarter", "full"})
     both.push_back(run_and_read(
-        tiny_slump({"geometry.dimension=" + dimension, "mpm.particles_per_cell=8", "time.end=0.2"}), dimension));
+        tiny_slump({"geometry.dimension=" + dimension, "mpm.particles_per_cell=8", "time.end=0.2"}),
+        dimension));
   for (const auto& name : both[0].history.names) {
     const double a = both[0].history.at(name).back(), b = both[1].history.at(name).back();
     EXPECT_NEAR(a, b, 1e-7 * std::abs(a) + (name == "numerical_energy_J" ? 1e-6 : 0.0)) << name;
@@ -130,11 +138,13 @@ TEST_F(MpmRun, AnEndTimeBelowOneStepDoesOneStep) {
   EXPECT_DOUBLE_EQ(run.history.at("time_s").back(), 1e-7);
 }
 
-class ResumedRun : public RunTest, public testing::WithParamInterface<std::tuple<std::string, std::string, std::string>> {
+class ResumedRun : public RunTest,
+                   public testing::WithParamInterface<std::tuple<std::string, std::string, std::string>> {
  protected:
   std::vector<std::string> settings() const {
     const auto& [scheme, model, precision] = GetParam();
-    std::vector<std::string> set = {"mpm.scheme=" + scheme, "material.model=" + model, "mpm.precision=" + precision};
+    std::vector<std::string> set = {"mpm.scheme=" + scheme, "material.model=" + model,
+                                    "mpm.precision=" + precision};
     if (model != "elasto-viscoplastic") return set;
     return with(set, {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
                       "thixotropy.initial_flocculation=1.8"});
@@ -176,8 +186,8 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, ResumedRun,
                                           testing::Values("elasto-viscoplastic", "papanastasiou"),
                                           testing::Values("double", "float")),
                          [](const auto& tested) {
-                           std::string name = std::get<0>(tested.param) + "_" + std::get<1>(tested.param) + "_" +
-                                              std::get<2>(tested.param);
+                           std::string name = std::get<0>(tested.param) + "_" + std::get<1>(tested.param) +
+                                              "_" + std::get<2>(tested.param);
                            for (char& c : name) c = c == '-' ? '_' : c;
                            return name;
                          });
@@ -192,9 +202,26 @@ TEST_F(MpmRun, ResumedBeforeItsFirstCheckpointItStartsOver) {
   expect_same_run(folder / "whole", folder / "cut");
 }
 
+TEST_F(MpmRun, InterruptedWhileItSettlesItRestsAtTheSameTime) {
+  // A bound that is soon met must hold for half a second: the interruption falls into it.
+  const auto scene = tiny_slump({"time.end=20", "time.rest_bound=0.1"});
+  ASSERT_EQ(run(scene, options("whole")).status, runs::Status::at_rest);
+  const auto whole = runs::read_run(folder / "whole");
+  auto stopped = options("stopped");
+  stopped.interrupted = stop_after(whole.info["steps"].get<int>() - 100);
+  ASSERT_EQ(run(scene, stopped).status, runs::Status::interrupted);
+  EXPECT_GE(read_checkpoint(folder / "stopped")->run.calm_since, 0.0);
+  ASSERT_EQ(resume(options("stopped")).status, runs::Status::at_rest);
+  const auto rested = runs::read_run(folder / "stopped");
+  EXPECT_EQ(rested.info["rest_time_s"].get<double>(), whole.info["rest_time_s"].get<double>());
+  EXPECT_EQ(rested.info["steps"].get<int>(), whole.info["steps"].get<int>());
+  EXPECT_EQ(text_of(folder / "whole" / "history.csv"), text_of(folder / "stopped" / "history.csv"));
+}
+
 TEST_F(MpmRun, AFinishedRunResumedStaysAsItIs) {
   run(tiny_slump(), options("run"));
-  const std::string history = text_of(folder / "run" / "history.csv"), profiles = text_of(folder / "run" / "profiles.csv");
+  const std::string history = text_of(folder / "run" / "history.csv"),
+                    profiles = text_of(folder / "run" / "profiles.csv");
   EXPECT_EQ(resume(options("run")).status, runs::Status::end_time);
   EXPECT_EQ(text_of(folder / "run" / "history.csv"), history);
   EXPECT_EQ(text_of(folder / "run" / "profiles.csv"), profiles);
@@ -220,7 +247,8 @@ TEST_F(MpmRun, ADamagedCheckpointIsAnErrorThatNamesIt) {
   };
   for (const std::size_t kept : {std::size_t{0}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, kept);
-    EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5")) << "cut to " << kept << " of " << whole.size() << " bytes";
+    EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5"))
+        << "cut to " << kept << " of " << whole.size() << " bytes";
   }
   std::ofstream(file, std::ios::binary | std::ios::trunc) << std::string(whole.size(), '?');
   EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5"));

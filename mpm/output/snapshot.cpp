@@ -21,14 +21,16 @@ void append(std::vector<float>& to, const std::vector<double>& from) {
 
 }  // namespace
 
-SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const scenes::Scene& scene, double resume_time)
+SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const scenes::Scene& scene,
+                               double resume_time)
     : directory_(directory), duct_(scene.kind == scenes::Kind::duct), dimension_(scene.spatial_dimension()) {
   std::filesystem::create_directories(directory_);
   std::ifstream file(directory_ / "particles.hdf.series");
   const auto series = nlohmann::json::parse(file, nullptr, false);
   if (series.is_discarded() || !series.contains("files")) return;
   for (const auto& entry : series["files"])
-    if (entry.value("time", 0.0) <= resume_time) series_.emplace_back(entry.value("name", ""), entry.value("time", 0.0));
+    if (entry.value("time", 0.0) <= resume_time)
+      series_.emplace_back(entry.value("name", ""), entry.value("time", 0.0));
 }
 
 void SnapshotWriter::write(double time, Solver& solver) {

@@ -18,7 +18,8 @@ namespace {
 /// An HDF5 file read with the library's own calls, so that our writer is not its own judge.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
+  explicit Reader(const std::filesystem::path& path)
+      : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
   ~Reader() { H5Fclose(file_); }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -104,7 +105,8 @@ TEST_F(Snapshot, IsAVtkHdfUnstructuredGridOfVertices) {
   EXPECT_THAT(file.shape("/VTKHDF/PointData/velocity"), ElementsAre(n, 3));
   for (const char* name : {"shear_rate", "shear_stress", "pressure", "raw_pressure", "volume"})
     EXPECT_THAT(file.shape(std::string("/VTKHDF/PointData/") + name), ElementsAre(n)) << name;
-  EXPECT_THAT(file.shape("/VTKHDF/PointData/flocculation"), ElementsAre()) << "a scene without thixotropy has none";
+  EXPECT_THAT(file.shape("/VTKHDF/PointData/flocculation"), ElementsAre())
+      << "a scene without thixotropy has none";
   double volume = 0.0;
   for (const double v : file.values("/VTKHDF/PointData/volume")) volume += v;
   EXPECT_NEAR(volume, 5.497787e-3, 1e-8);
@@ -119,8 +121,9 @@ TEST_F(Snapshot, IsAVtkHdfUnstructuredGridOfVertices) {
 }
 
 TEST_F(Snapshot, ThixotropicParticlesCarryTheirFlocculation) {
-  const auto scene = tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
-                                 "thixotropy.initial_flocculation=1.8"});
+  const auto scene =
+      tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                  "thixotropy.initial_flocculation=1.8"});
   auto solver = make_solver(settings_of(scene), seed_particles(scene));
   SnapshotWriter(folder, scene, -1.0).write(0.0, *solver);
   for (const double lambda : Reader(folder / "particles_000000.hdf").values("/VTKHDF/PointData/flocculation"))
@@ -133,7 +136,8 @@ TEST_F(Snapshot, TheSeriesListsEverySnapshotWithItsTime) {
   ASSERT_EQ(series["files"].size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(series["files"][i]["time"].get<double>(), 0.1 * static_cast<double>(i), 1e-12);
-    EXPECT_TRUE(std::filesystem::exists(folder / "run" / "particles" / series["files"][i]["name"].get<std::string>()));
+    EXPECT_TRUE(std::filesystem::exists(folder / "run" / "particles" /
+                                        series["files"][i]["name"].get<std::string>()));
   }
 }
 

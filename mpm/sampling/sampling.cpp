@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "mpm/solver/settings.h"
@@ -40,7 +40,8 @@ Body cone(const scenes::Scene& scene) {
   body.upper[up] = g.cone_height;
   body.contains = [g, dim, up](const Point& x) {
     if (x[up] < 0.0 || x[up] > g.cone_height) return false;
-    const double radius = g.cone_radius_bottom + (g.cone_radius_top - g.cone_radius_bottom) * x[up] / g.cone_height;
+    const double radius =
+        g.cone_radius_bottom + (g.cone_radius_top - g.cone_radius_bottom) * x[up] / g.cone_height;
     return (dim == 3 ? std::hypot(x[0], x[1]) : std::abs(x[0])) <= radius;
   };
   body.volume = scene.geometry.dimension == scenes::Dimension::plane
@@ -60,7 +61,11 @@ Body duct(const scenes::Scene& scene) {
 class Sampler {
  public:
   Sampler(const scenes::Scene& scene, const Body& body)
-      : scene_(scene), body_(body), dim_(scene.spatial_dimension()), cell_(cell_size(scene)), random_(scene.mpm.seed) {
+      : scene_(scene),
+        body_(body),
+        dim_(scene.spatial_dimension()),
+        cell_(cell_size(scene)),
+        random_(scene.mpm.seed) {
     for (int a = 0; a < dim_; ++a) sites_[a] = scene.mpm.particles_per_cell.at(static_cast<std::size_t>(a));
   }
 
@@ -102,7 +107,8 @@ class Sampler {
     for (int i = 0; i < probes; ++i)
       for (int j = 0; j < probes; ++j)
         for (int k = 0; k < depth; ++k) {
-          const Point within = {lower[0] + (i + 0.5) / probes * size[0], lower[1] + (j + 0.5) / probes * size[1],
+          const Point within = {lower[0] + (i + 0.5) / probes * size[0],
+                                lower[1] + (j + 0.5) / probes * size[1],
                                 dim_ == 3 ? lower[2] + (k + 0.5) / probes * size[2] : 0.0};
           if (!body_.contains(global(cell, within))) continue;
           ++inside;
@@ -126,7 +132,8 @@ class Sampler {
   Point jittered(const CellIndex& cell, const Point& lower, const Point& size, const Point& centroid) {
     for (int attempt = 0; attempt < 16; ++attempt) {
       Point within{};
-      for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) within[a] = lower[a] + uniform() * size[a];
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a)
+        within[a] = lower[a] + uniform() * size[a];
       if (body_.contains(global(cell, within))) return within;
     }
     return centroid;

@@ -71,7 +71,8 @@ TEST(Sampling, EveryParticleLiesInsideTheCone) {
           ASSERT_LT(seed.position[a], 1.0);
         }
         const auto x = place(seed, 0.01);
-        const double height = x[static_cast<std::size_t>(up)], radius = up == 2 ? std::hypot(x[0], x[1]) : std::abs(x[0]);
+        const double height = x[static_cast<std::size_t>(up)],
+                     radius = up == 2 ? std::hypot(x[0], x[1]) : std::abs(x[0]);
         ASSERT_GE(height, 0.0) << dimension;
         ASSERT_LE(height, 0.3) << dimension;
         ASSERT_LE(radius, 0.1 - 0.05 * height / 0.3 + 1e-12) << dimension;
@@ -124,7 +125,8 @@ TEST(Sampling, JitterIsReproducibleAndFollowsItsSeed) {
   // One in each lattice site: as even as the lattice, on the scale of a site.
   std::set<std::array<int, 4>> sites;
   for (const auto& s : one)
-    sites.insert({s.cell[0], s.cell[1], static_cast<int>(s.position[0] * 3.0), static_cast<int>(s.position[1] * 3.0)});
+    sites.insert(
+        {s.cell[0], s.cell[1], static_cast<int>(s.position[0] * 3.0), static_cast<int>(s.position[1] * 3.0)});
   EXPECT_EQ(sites.size(), one.size());
 }
 
@@ -138,7 +140,8 @@ TEST(Sampling, AxisymmetricParticlesStandForRings) {
 }
 
 TEST(Sampling, AQuarterIsAQuarterOfTheFullCone) {
-  const auto full = seed_particles(slump("full", {eight})), quarter = seed_particles(slump("quarter", {eight}));
+  const auto full = seed_particles(slump("full", {eight})),
+             quarter = seed_particles(slump("quarter", {eight}));
   EXPECT_EQ(full.size(), 4 * quarter.size());
   std::array<double, 3> centre{};
   for (const auto& s : full)
@@ -149,13 +152,15 @@ TEST(Sampling, AQuarterIsAQuarterOfTheFullCone) {
   for (const auto& s : quarter) height += s.volume * place(s, 0.01)[2];
   EXPECT_NEAR(centre[2], 4.0 * height, 1e-12 * centre[2]);
   // Centroid of the frustum, to what sites cut by the flank leave.
-  const double r = 0.05, b = 0.1, exact = 0.3 / 4.0 * (b * b + 2 * b * r + 3 * r * r) / (b * b + b * r + r * r);
+  const double r = 0.05, b = 0.1,
+               exact = 0.3 / 4.0 * (b * b + 2 * b * r + 3 * r * r) / (b * b + b * r + r * r);
   EXPECT_NEAR(centre[2] / total(full), exact, 2e-3 * exact);
 }
 
 TEST(Sampling, FlocculationBeginsAsTheSceneSays) {
-  const auto scene = slump("axisymmetric", {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
-                                            "thixotropy.initial_flocculation=1.8"});
+  const auto scene = slump("axisymmetric",
+                           {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                            "thixotropy.initial_flocculation=1.8"});
   for (const auto& s : seed_particles(scene)) ASSERT_EQ(s.flocculation, 1.8);
   for (const auto& s : seed_particles(slump("axisymmetric"))) ASSERT_EQ(s.flocculation, 0.0);
 }

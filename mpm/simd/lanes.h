@@ -2,9 +2,10 @@
 
 #include "mpm/simd/math.h"
 
-/// Registers as values: a node record of four, and as many particles as one register holds. Part of the kernels, which are
-/// compiled once per instruction set, each time in the namespace FLOWREST_KERNEL_SPACE: nothing here or in what includes it
-/// may use library templates, whose instances a linker would merge across instruction sets.
+/// Registers as values: a node record of four, and as many particles as one register holds. Part of the
+/// kernels, which are compiled once per instruction set, each time in the namespace FLOWREST_KERNEL_SPACE:
+/// nothing here or in what includes it may use library templates, whose instances a linker would merge across
+/// instruction sets.
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// Four values of one node record.

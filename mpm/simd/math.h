@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-/// Arithmetic that a compiler can turn into SIMD code: no branch, no call, no error number. Loops over particles use
-/// these in place of the standard functions; the standard ones remain the reference in the tests.
+/// Arithmetic that a compiler can turn into SIMD code: no branch, no call, no error number. Loops over
+/// particles use these in place of the standard functions; the standard ones remain the reference in the
+/// tests.
 namespace flowrest::mpm {
 
 #define FLOWREST_INLINE inline __attribute__((always_inline))
@@ -34,8 +35,8 @@ struct ExponentialParts {
   T fraction, scale;
 };
 
-/// For |x| <= 700; beyond, the argument is clamped. Cody-Waite reduction to |r| <= ln(2)/2 and a Taylor polynomial; 2^n is
-/// made in the exponent bits, where adding 1.5 * 2^52 has put n.
+/// For |x| <= 700; beyond, the argument is clamped. Cody-Waite reduction to |r| <= ln(2)/2 and a Taylor
+/// polynomial; 2^n is made in the exponent bits, where adding 1.5 * 2^52 has put n.
 FLOWREST_INLINE ExponentialParts<double> exponential_parts(double x) {
   x = minimum(maximum(x, -700.0), 700.0);
   constexpr double shift = 0x1.8p52;

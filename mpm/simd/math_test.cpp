@@ -11,7 +11,8 @@ using namespace flowrest::mpm;
 
 namespace {
 
-/// Largest error of `exponential` against the long double function over [-reach, reach], in units of the last place.
+/// Largest error of `exponential` against the long double function over [-reach, reach], in units of the last
+/// place.
 template <class T>
 double largest_error_in_ulp(T reach, int samples) {
   test::Random random(7);
@@ -21,7 +22,8 @@ double largest_error_in_ulp(T reach, int samples) {
     const long double exact = std::exp(static_cast<long double>(x));
     const T nearest = static_cast<T>(exact);
     const T ulp = std::nextafter(nearest, std::numeric_limits<T>::infinity()) - nearest;
-    const double error = static_cast<double>(std::abs(static_cast<long double>(exponential(x)) - exact) / ulp);
+    const double error =
+        static_cast<double>(std::abs(static_cast<long double>(exponential(x)) - exact) / ulp);
     worst = std::max(worst, error);
   }
   return worst;
@@ -45,7 +47,8 @@ TEST(Exponential, LessOneKeepsItsDigitsHoweverSmallTheArgument) {
     const auto single = static_cast<float>(x);
     if (std::abs(single) > 80.0f) continue;
     const long double single_exact = std::expm1(static_cast<long double>(single));
-    ASSERT_LE(std::abs(exponential_minus_one(single) - single_exact), 3e-7L * std::abs(single_exact)) << "x = " << x;
+    ASSERT_LE(std::abs(exponential_minus_one(single) - single_exact), 3e-7L * std::abs(single_exact))
+        << "x = " << x;
   }
   EXPECT_EQ(exponential_minus_one(0.0), 0.0);
   EXPECT_EQ(exponential_minus_one(-1e9), -1.0);

@@ -5,10 +5,10 @@
 
 namespace flowrest::mpm {
 
-#define FLOWREST_DECLARE_KERNELS(space)                   \
-  namespace space {                                       \
-  Kernels<double> kernels_double(int, bool, Transfer);    \
-  Kernels<float> kernels_float(int, bool, Transfer);      \
+#define FLOWREST_DECLARE_KERNELS(space)                \
+  namespace space {                                    \
+  Kernels<double> kernels_double(int, bool, Transfer); \
+  Kernels<float> kernels_float(int, bool, Transfer);   \
   }
 FLOWREST_DECLARE_KERNELS(kernels_generic)
 #ifdef FLOWREST_X86_64
@@ -20,8 +20,8 @@ std::vector<std::string> instruction_sets() {
   std::vector<std::string> sets;
 #ifdef FLOWREST_X86_64
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512bw"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
     sets.push_back("avx512");
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) sets.push_back("avx2");
 #endif
@@ -33,7 +33,8 @@ template <class T>
 Kernels<T> kernels(const std::string& instruction_set, int dimension, bool axisymmetric, Transfer transfer) {
   const auto sets = instruction_sets();
   if (std::find(sets.begin(), sets.end(), instruction_set) == sets.end())
-    throw std::invalid_argument("this machine or build does not have the instruction set '" + instruction_set + "'");
+    throw std::invalid_argument("this machine or build does not have the instruction set '" +
+                                instruction_set + "'");
   const auto pick = [&](auto of_double, auto of_float) {
     if constexpr (sizeof(T) == sizeof(double)) {
       return of_double(dimension, axisymmetric, transfer);

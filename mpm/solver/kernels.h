@@ -7,11 +7,15 @@
 #include "mpm/material/flow_law.h"
 #include "mpm/solver/layout.h"
 
-/// The stages of a step as plain functions over one block, compiled once per instruction set and chosen at run time.
+/// The stages of a step as plain functions over one block, compiled once per instruction set and chosen at
+/// run time.
 namespace flowrest::mpm {
 
 enum class Transfer { quadratic_apic, linear_flip };
-enum class Dilatation { cell_average, centroid };  ///< how the volumetric part of the strain is averaged (B-bar)
+enum class Dilatation {
+  cell_average,
+  centroid
+};  ///< how the volumetric part of the strain is averaged (B-bar)
 enum class StressRate { hughes_winget, jaumann };
 enum class Law {
   elasto_viscoplastic,
@@ -26,11 +30,11 @@ enum class Law {
 /// Everything that is the same for all particles of a step.
 template <class T>
 struct StepParameters {
-  T step{};           ///< s
-  T cell{};           ///< m
-  T density{};        ///< kg/m3, initial
+  T step{};             ///< s
+  T cell{};             ///< m
+  T density{};          ///< kg/m3, initial
   T acceleration[3]{};  ///< m/s2, of gravity and body force
-  T keep{};           ///< FLIP: share of the particle's own velocity kept, exp(-step / relaxation time)
+  T keep{};             ///< FLIP: share of the particle's own velocity kept, exp(-step / relaxation time)
   FlowParameters<T> flow;
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;
@@ -51,8 +55,8 @@ constexpr int workspace_arrays = 112;
 constexpr int tile_padding = 16;  ///< lanes of the last pack may write past a tile's end
 
 template <class T>
-using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&, T* arenas, const T* nodes,
-                            const Workspace<T>&);
+using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&, T* arenas,
+                            const T* nodes, const Workspace<T>&);
 template <class T>
 using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const T* arenas, T* nodes);
 
@@ -61,15 +65,18 @@ template <class T>
 struct Kernels {
   int dimension = 0;
   int records = 1;  ///< records per node, in arenas and nodes
-  BlockStage<T> particles_to_grid = nullptr;      ///< mass, momentum and the impulse of the step's forces into the arena
-  NodeStage<T> update_nodes = nullptr;            ///< arenas summed into velocities
-  BlockStage<T> grid_to_particles = nullptr;      ///< APIC: velocities, strain, stress, positions
-                                                  ///< FLIP: velocities, and their momentum re-mapped into the arena
-  NodeStage<T> remap_nodes = nullptr;             ///< FLIP only (MUSL)
+  BlockStage<T> particles_to_grid =
+      nullptr;  ///< mass, momentum and the impulse of the step's forces into the arena
+  NodeStage<T> update_nodes = nullptr;  ///< arenas summed into velocities
+  BlockStage<T> grid_to_particles =
+      nullptr;                         ///< APIC: velocities, strain, stress, positions
+                                       ///< FLIP: velocities, and their momentum re-mapped into the arena
+  NodeStage<T> remap_nodes = nullptr;  ///< FLIP only (MUSL)
   BlockStage<T> remapped_to_particles = nullptr;  ///< FLIP only (MUSL): strain, stress, positions
 };
 
-/// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or "generic".
+/// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or
+/// "generic".
 std::vector<std::string> instruction_sets();
 
 /// @throws std::invalid_argument where the machine cannot run `instruction_set`.

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-/// The shared shape of the data: cells in blocks of 4 per axis, particles as a structure of arrays sorted by cell,
-/// one private arena of nodes per block. Every stage of the step is written against these views.
+/// The shared shape of the data: cells in blocks of 4 per axis, particles as a structure of arrays sorted by
+/// cell, one private arena of nodes per block. Every stage of the step is written against these views.
 namespace flowrest::mpm {
 
 constexpr int block_edge = 4;
@@ -16,13 +16,15 @@ constexpr int cells_per_block = power(block_edge, Dim);
 template <int Dim>
 constexpr int nodes_per_arena = power(arena_edge, Dim);
 
-/// Node records are four wide: (mass, momentum or velocity). FLIP carries a second record, (0, force or old velocity).
+/// Node records are four wide: (mass, momentum or velocity). FLIP carries a second record, (0, force or old
+/// velocity).
 constexpr int record = 4;
 
 /// A plane wall on a face of the background grid.
 enum class PlaneWall : std::uint8_t { none, slip, no_slip };
 
-/// Bounds along one axis in cells: material lies in [lower_cell, upper_cell). Ignored where the wall is `none`.
+/// Bounds along one axis in cells: material lies in [lower_cell, upper_cell). Ignored where the wall is
+/// `none`.
 struct AxisBounds {
   PlaneWall lower = PlaneWall::none, upper = PlaneWall::none;
   int lower_cell = 0, upper_cell = 0;
@@ -35,7 +37,8 @@ struct Mover {
   std::int8_t shift[3];
 };
 
-/// Sums and extremes of one block over one step, merged in block order so that results do not depend on threads.
+/// Sums and extremes of one block over one step, merged in block order so that results do not depend on
+/// threads.
 struct BlockSums {
   double largest_speed_squared = 0.0;  ///< m2/s2
   double largest_pressure = 0.0;       ///< Pa
@@ -47,13 +50,14 @@ struct BlockSums {
 
 /// What a kernel sees of one occupied block.
 struct BlockView {
-  int origin[3] = {0, 0, 0};              ///< first cell, in cells
-  std::uint32_t slot = 0;                 ///< its place in the arrays of arenas and nodes
-  const std::uint32_t* list = nullptr;    ///< particles, sorted by cell
-  const std::uint32_t* start = nullptr;   ///< cells_per_block + 1 offsets into list
-  bool contiguous = false;                ///< list[i] == list[0] + i
-  const std::uint32_t* plus = nullptr;    ///< slots of the 2^Dim blocks at +{0,1} per axis; no_slot where absent
-  Mover* movers = nullptr;                ///< room for every particle of the block
+  int origin[3] = {0, 0, 0};             ///< first cell, in cells
+  std::uint32_t slot = 0;                ///< its place in the arrays of arenas and nodes
+  const std::uint32_t* list = nullptr;   ///< particles, sorted by cell
+  const std::uint32_t* start = nullptr;  ///< cells_per_block + 1 offsets into list
+  bool contiguous = false;               ///< list[i] == list[0] + i
+  const std::uint32_t* plus =
+      nullptr;              ///< slots of the 2^Dim blocks at +{0,1} per axis; no_slot where absent
+  Mover* movers = nullptr;  ///< room for every particle of the block
   BlockSums* sums = nullptr;
 };
 constexpr std::uint32_t no_slot = 0xffffffffu;
@@ -61,23 +65,24 @@ constexpr std::uint32_t no_slot = 0xffffffffu;
 /// What a kernel sees of one block of nodes: the arenas that hold parts of it.
 struct NodeView {
   std::uint32_t slot = 0;
-  const std::uint32_t* minus = nullptr;  ///< slots of the occupied blocks at -{0,1} per axis; no_slot where there is none
+  const std::uint32_t* minus =
+      nullptr;  ///< slots of the occupied blocks at -{0,1} per axis; no_slot where there is none
 };
 
-/// The particles' arrays. Positions are cell-relative, in [0, 1) of the cell, so that small motions are not lost in a
-/// large coordinate whatever the precision. Arrays a scene does not use are null.
+/// The particles' arrays. Positions are cell-relative, in [0, 1) of the cell, so that small motions are not
+/// lost in a large coordinate whatever the precision. Arrays a scene does not use are null.
 template <class T>
 struct ParticleView {
-  T* position[3] = {};       ///< within the cell, in cells
-  T* velocity[3] = {};       ///< m/s
-  T* affine[9] = {};         ///< APIC: velocity difference across a cell, m/s; [i * Dim + j]
-  T* deviator[5] = {};       ///< deviatoric stress, Pa
-  T* volume_ratio = nullptr; ///< J
-  T* pressure = nullptr;     ///< Pa, of the equation of state
-  T* mass = nullptr;         ///< kg, constant
-  T* rate = nullptr;         ///< 1/s, plastic (EVP) or total (fluid) shear rate
-  T* lambda = nullptr;       ///< flocculation state
-  T* advection[3] = {};      ///< FLIP: the grid's velocity at the particle, m/s
+  T* position[3] = {};        ///< within the cell, in cells
+  T* velocity[3] = {};        ///< m/s
+  T* affine[9] = {};          ///< APIC: velocity difference across a cell, m/s; [i * Dim + j]
+  T* deviator[5] = {};        ///< deviatoric stress, Pa
+  T* volume_ratio = nullptr;  ///< J
+  T* pressure = nullptr;      ///< Pa, of the equation of state
+  T* mass = nullptr;          ///< kg, constant
+  T* rate = nullptr;          ///< 1/s, plastic (EVP) or total (fluid) shear rate
+  T* lambda = nullptr;        ///< flocculation state
+  T* advection[3] = {};       ///< FLIP: the grid's velocity at the particle, m/s
 };
 
 }  // namespace flowrest::mpm

@@ -21,7 +21,9 @@ Law law_of(scenes::Model model, bool thixotropic) {
   return Law::newtonian;
 }
 
-PlaneWall wall_of(scenes::Wall wall) { return wall == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip; }
+PlaneWall wall_of(scenes::Wall wall) {
+  return wall == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip;
+}
 
 std::array<AxisBounds, 3> bounds_of(const scenes::Scene& scene) {
   std::array<AxisBounds, 3> bounds{};
@@ -71,7 +73,8 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.dimension = scene.spatial_dimension();
   s.axisymmetric = scene.geometry.dimension == scenes::Dimension::axisymmetric;
   const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
-  s.transfer = scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
+  s.transfer =
+      scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
   s.dilatation = paper ? Dilatation::centroid : Dilatation::cell_average;
   s.stress_rate = paper ? StressRate::jaumann : StressRate::hughes_winget;
   s.law = law_of(m.model, scene.thixotropy.has_value());

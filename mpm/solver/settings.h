@@ -8,7 +8,8 @@ namespace flowrest::mpm {
 /// The solver's settings for a scene and the model it names.
 SolverSettings settings_of(const scenes::Scene&);
 
-/// What one simulated particle stands for of the whole body: 4 for a quarter, 2 for half a plane section, else 1.
+/// What one simulated particle stands for of the whole body: 4 for a quarter, 2 for half a plane section,
+/// else 1.
 double whole_body_factor(const scenes::Scene&);
 
 /// The axis gravity points down along (the last), and the axis a duct is driven along (the first).

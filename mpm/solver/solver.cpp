@@ -31,7 +31,8 @@ class SolverOf final : public Solver {
     for (std::size_t p = 0; p < seeds.size(); ++p) {
       cells[p] = seeds[p].cell;
       for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
-        v.position[a][p] = std::clamp(static_cast<T>(seeds[p].position[a]), lowest_in_cell(), highest_in_cell());
+        v.position[a][p] =
+            std::clamp(static_cast<T>(seeds[p].position[a]), lowest_in_cell(), highest_in_cell());
         v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
       }
       v.mass[p] = static_cast<T>(seeds[p].volume * settings.density);
@@ -44,7 +45,8 @@ class SolverOf final : public Solver {
     prepare();
   }
 
-  SolverOf(const SolverSettings& settings, const SolverState& state) : SolverOf(settings, state.cells.size()) {
+  SolverOf(const SolverSettings& settings, const SolverState& state)
+      : SolverOf(settings, state.cells.size()) {
     for (int k = 0; k < particles_.array_count(); ++k) {
       const auto& from = state.arrays.at(static_cast<std::size_t>(k));
       for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[p] = static_cast<T>(from[p]);
@@ -110,7 +112,8 @@ class SolverOf final : public Solver {
                     settings.transfer == Transfer::linear_flip, is_thixotropic(settings.law)},
                    count),
         blocks_(settings.dimension, settings.bounds),
-        instruction_set_(settings.instruction_set.empty() ? instruction_sets().front() : settings.instruction_set),
+        instruction_set_(settings.instruction_set.empty() ? instruction_sets().front()
+                                                          : settings.instruction_set),
         kernels_(kernels<T>(instruction_set_, settings.dimension, settings.axisymmetric, settings.transfer)) {
     threads_ = settings.threads > 0
                    ? settings.threads
@@ -118,9 +121,10 @@ class SolverOf final : public Solver {
     auto& p = parameters_;
     p.cell = static_cast<T>(settings.cell);
     p.density = static_cast<T>(settings.density);
-    p.flow = {static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
-              static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
-              static_cast<T>(settings.flow.flocculation_growth), static_cast<T>(settings.flow.deflocculation)};
+    p.flow = {
+        static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
+        static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
+        static_cast<T>(settings.flow.flocculation_growth), static_cast<T>(settings.flow.deflocculation)};
     p.state = {static_cast<T>(settings.state.bulk_modulus), static_cast<T>(settings.state.shear_modulus),
                static_cast<T>(settings.state.exponent)};
     p.law = settings.law;
@@ -128,9 +132,10 @@ class SolverOf final : public Solver {
     p.dilatation = settings.dilatation;
     p.explicit_fluid = settings.explicit_fluid;
     for (std::size_t a = 0; a < 3; ++a) p.bounds[a] = settings.bounds[a];
-    // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep every real
-    // contribution and large enough that its inverse stays finite.
-    const double full = settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
+    // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep
+    // every real contribution and large enough that its inverse stays finite.
+    const double full =
+        settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
     p.smallest_mass = static_cast<T>(full * 1e-25);
   }
 
@@ -140,9 +145,13 @@ class SolverOf final : public Solver {
   }
 
   /// Bounds of a place within a cell, for particles that are put there.
-  T margin() const { return static_cast<T>(settings_.transfer == Transfer::linear_flip ? Linear::margin : Quadratic::margin); }
+  T margin() const {
+    return static_cast<T>(settings_.transfer == Transfer::linear_flip ? Linear::margin : Quadratic::margin);
+  }
   T lowest_in_cell() const { return margin(); }
-  T highest_in_cell() const { return std::min(T(1) - margin(), sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f)); }
+  T highest_in_cell() const {
+    return std::min(T(1) - margin(), sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f));
+  }
 
   void prepare() {
     const std::size_t node_values = static_cast<std::size_t>(kernels_.records) * record;
@@ -154,12 +163,14 @@ class SolverOf final : public Solver {
       arenas_ = AlignedArray<T>(room * arena_size);
       nodes_ = AlignedArray<T>(room * nodes_size);
     }
-    while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell()) tile_capacity_ += 32;
+    while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell())
+      tile_capacity_ += 32;
     if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {
       workspaces_.clear();
       workspace_memory_.clear();
       for (int t = 0; t < threads_; ++t) {
-        workspace_memory_.emplace_back(static_cast<std::size_t>(workspace_arrays) * static_cast<std::size_t>(tile_capacity_));
+        workspace_memory_.emplace_back(static_cast<std::size_t>(workspace_arrays) *
+                                       static_cast<std::size_t>(tile_capacity_));
         workspaces_.push_back({workspace_memory_.back().data(), tile_capacity_});
       }
     }
@@ -183,11 +194,13 @@ class SolverOf final : public Solver {
       const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
       const auto over_blocks = [&](BlockStage<T> stage) {
 #pragma omp for schedule(dynamic, 1)
-        for (std::int64_t b = 0; b < blocks; ++b) stage(parameters_, view, views_[static_cast<std::size_t>(b)], arenas, nodes, workspace);
+        for (std::int64_t b = 0; b < blocks; ++b)
+          stage(parameters_, view, views_[static_cast<std::size_t>(b)], arenas, nodes, workspace);
       };
       const auto over_nodes = [&](NodeStage<T> stage) {
 #pragma omp for schedule(static)
-        for (std::int64_t b = 0; b < node_blocks; ++b) stage(parameters_, node_views_[static_cast<std::size_t>(b)], arenas, nodes);
+        for (std::int64_t b = 0; b < node_blocks; ++b)
+          stage(parameters_, node_views_[static_cast<std::size_t>(b)], arenas, nodes);
       };
       const auto mark = [&](int i) {
 #pragma omp master
@@ -233,9 +246,10 @@ class SolverOf final : public Solver {
     }
     result.largest_speed = std::sqrt(speed_squared);
     if (faults > 0 || !std::isfinite(result.dissipated))
-      throw runs::NumericsError(fmt::format(
-          "{} particles moved further than one cell in one step of {:.3g} s, or are no longer finite: the step is unstable", faults,
-          step));
+      throw runs::NumericsError(
+          fmt::format("{} particles moved further than one cell in one step of {:.3g} s, or are no longer "
+                      "finite: the step is unstable",
+                      faults, step));
     return result;
   }
 
@@ -248,7 +262,8 @@ class SolverOf final : public Solver {
         particles_.view().position[h.axis][h.particle] = h.upper ? highest_in_cell() : lowest_in_cell();
       stale_ = true;
     }
-    if (steps_ % steps_between_rearrangements == 0 && blocks_.disorder() > disorder_worth_rearranging) rearrange();
+    if (steps_ % steps_between_rearrangements == 0 && blocks_.disorder() > disorder_worth_rearranging)
+      rearrange();
     times_.sorting += omp_get_wtime() - begin;
   }
 
@@ -265,8 +280,8 @@ class SolverOf final : public Solver {
     batch.count = count;
     for (auto& a : batch.position) a.assign(count, 0.0);
     for (auto& a : batch.velocity) a.assign(count, 0.0);
-    for (auto* a : {&batch.mass, &batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure, &batch.pressure,
-                    &batch.elastic_energy})
+    for (auto* a : {&batch.mass, &batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure,
+                    &batch.pressure, &batch.elastic_energy})
       a->resize(count);
     batch.flocculation.resize(v.lambda ? count : 0);
     for (int cell = 0; cell < cells; ++cell) {
@@ -276,7 +291,8 @@ class SolverOf final : public Solver {
         const std::uint32_t p = block.list[i];
         for (int a = 0; a < dim; ++a) {
           const auto axis = static_cast<std::size_t>(a);
-          batch.position[axis][i] = (block.origin[a] + in_block[a] + static_cast<double>(v.position[a][p])) * settings_.cell;
+          batch.position[axis][i] =
+              (block.origin[a] + in_block[a] + static_cast<double>(v.position[a][p])) * settings_.cell;
           batch.velocity[axis][i] = static_cast<double>(v.velocity[a][p]);
         }
         const double ratio = static_cast<double>(v.volume_ratio[p]);
@@ -293,7 +309,8 @@ class SolverOf final : public Solver {
         thrust += batch.raw_pressure[i] * batch.volume[i];
         total += batch.volume[i];
       }
-      for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) batch.pressure[i] = thrust / total;
+      for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i)
+        batch.pressure[i] = thrust / total;
     }
   }
 

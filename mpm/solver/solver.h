@@ -28,8 +28,8 @@ struct SolverSettings {
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
-  int threads = 0;               ///< 0: as many as the particles can feed, up to all cores
-  std::string instruction_set;   ///< empty: the best this machine runs
+  int threads = 0;              ///< 0: as many as the particles can feed, up to all cores
+  std::string instruction_set;  ///< empty: the best this machine runs
 };
 
 /// One particle to begin with.
@@ -72,7 +72,8 @@ struct StageTimes {
 /// Everything a solver holds, for checkpoints: particles in sorted order.
 struct SolverState {
   std::vector<CellIndex> cells;
-  std::vector<std::vector<double>> arrays;  ///< of every array, in the order of Particles; exact for either precision
+  std::vector<std::vector<double>>
+      arrays;  ///< of every array, in the order of Particles; exact for either precision
   int tile_capacity = 0;
 };
 

@@ -47,7 +47,8 @@ Momenta momenta(Open& open) {
       const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
       const int ib = static_cast<int>(b), ic = static_cast<int>(c);
       m.linear[a] += mass * v[a];
-      m.angular[a] += mass * (x[b] * v[c] - x[c] * v[b]) + mass * open.cell / 4.0 * (affine(ic, ib) - affine(ib, ic));
+      m.angular[a] +=
+          mass * (x[b] * v[c] - x[c] * v[b]) + mass * open.cell / 4.0 * (affine(ic, ib) - affine(ib, ic));
     }
     m.linear_scale += mass * std::hypot(v[0], v[1], v[2]);
     m.angular_scale += mass * std::hypot(x[0], x[1], x[2]) * std::hypot(v[0], v[1], v[2]);
@@ -74,7 +75,8 @@ std::pair<double, double> difference(Solver& one, Solver& other, const SolverSet
 void expect_same_bits(const SolverState& a, const SolverState& b, const std::string& what) {
   ASSERT_EQ(a.cells, b.cells) << what;
   ASSERT_EQ(a.arrays.size(), b.arrays.size()) << what;
-  for (std::size_t k = 0; k < a.arrays.size(); ++k) ASSERT_EQ(a.arrays[k], b.arrays[k]) << what << ", array " << k;
+  for (std::size_t k = 0; k < a.arrays.size(); ++k)
+    ASSERT_EQ(a.arrays[k], b.arrays[k]) << what << ", array " << k;
 }
 
 }  // namespace
@@ -95,13 +97,15 @@ TEST(Solver, FreeFallIsExact) {
     for (int i = 0; i < steps; ++i) solver->step(dt, gravity);
     Open end(*solver, s);
     const auto before = start.by_mass(), after = end.by_mass();
-    const double velocity = 1.0 - 9.81 * dt * steps, drop = dt * steps - 9.81 * dt * dt * steps * (steps + 1) / 2.0;
+    const double velocity = 1.0 - 9.81 * dt * steps,
+                 drop = dt * steps - 9.81 * dt * dt * steps * (steps + 1) / 2.0;
     const double allowed = 100.0 * unit_of(v);
     for (std::size_t i = 0; i < before.size(); ++i)
       for (int a = 0; a < s.dimension; ++a) {
         const bool falls = a == s.dimension - 1;
         ASSERT_NEAR(end.velocity(a)[after[i]], falls ? velocity : 0.0, allowed * 2.0) << name_of(v);
-        ASSERT_NEAR(end.position(a, after[i]), start.position(a, before[i]) + (falls ? drop : 0.0), allowed * s.cell * 20.0)
+        ASSERT_NEAR(end.position(a, after[i]), start.position(a, before[i]) + (falls ? drop : 0.0),
+                    allowed * s.cell * 20.0)
             << name_of(v);
         ASSERT_NEAR(end.volume_ratio()[after[i]], 1.0, allowed) << name_of(v);
       }
@@ -123,9 +127,11 @@ TEST(Solver, MomentumIsConservedFarFromWallsWhateverTheStress) {
     // Per step each particle's share is rounded; what is left is far below what any lost force would be.
     const double allowed = 50.0 * unit_of(v);
     for (std::size_t a = 0; a < 3; ++a) {
-      EXPECT_NEAR(after.linear[a], before.linear[a], allowed * before.linear_scale) << name_of(v) << ", axis " << a;
+      EXPECT_NEAR(after.linear[a], before.linear[a], allowed * before.linear_scale)
+          << name_of(v) << ", axis " << a;
       if (v.transfer != Transfer::quadratic_apic) continue;  // FLIP does not promise it
-      EXPECT_NEAR(after.angular[a], before.angular[a], allowed * before.angular_scale) << name_of(v) << ", axis " << a;
+      EXPECT_NEAR(after.angular[a], before.angular[a], allowed * before.angular_scale)
+          << name_of(v) << ", axis " << a;
     }
   }
 }
@@ -140,7 +146,8 @@ TEST(Solver, VerticalMomentumOfARingIsConserved) {
     const Momenta before = momenta(start);
     for (int i = 0; i < 50; ++i) solver->step(usual_step(s), weightless);
     Open end(*solver, s);
-    EXPECT_NEAR(momenta(end).linear[1], before.linear[1], 50.0 * unit_of(v) * before.linear_scale) << name_of(v);
+    EXPECT_NEAR(momenta(end).linear[1], before.linear[1], 50.0 * unit_of(v) * before.linear_scale)
+        << name_of(v);
   }
 }
 
@@ -194,11 +201,13 @@ TEST(Solver, ApicCarriesALinearVelocityFieldExactly) {
       const std::size_t p = old_order[k], q = new_order[k];
       for (int i = 0; i < s.dimension; ++i) {
         ASSERT_NEAR(after.velocity(i)[q], field(i, p), allowed) << name_of(v);
-        ASSERT_NEAR(after.position(i, q), open.position(i, p) + dt * field(i, p), allowed * s.cell) << name_of(v);
+        ASSERT_NEAR(after.position(i, q), open.position(i, p) + dt * field(i, p), allowed * s.cell)
+            << name_of(v);
         for (int j = 0; j < s.dimension; ++j)
           ASSERT_NEAR(after.affine(i, j)[q], gradient[i][j] * s.cell, allowed) << name_of(v);
       }
-      ASSERT_NEAR(after.volume_ratio()[q], 1.0 + dt * divergence, 10.0 * allowed * dt / s.cell + unit_of(v)) << name_of(v);
+      ASSERT_NEAR(after.volume_ratio()[q], 1.0 + dt * divergence, 10.0 * allowed * dt / s.cell + unit_of(v))
+          << name_of(v);
     }
   }
 }
@@ -213,8 +222,11 @@ TEST(Solver, ParticlesOnFacesAndCornersOfCellsAreLikeAnyOther) {
       for (int j = 10; j < 14; ++j)
         for (const double x : places)
           for (const double y : places)
-            seeds.push_back({{i, j, s.dimension == 3 ? 10 : 0}, {x, y, s.dimension == 3 ? x : 0.0},
-                             1e-7 * (1.0 + 1e-3 * ++count), {0.2, -0.1, s.dimension == 3 ? 0.3 : 0.0}, 0.0});
+            seeds.push_back({{i, j, s.dimension == 3 ? 10 : 0},
+                             {x, y, s.dimension == 3 ? x : 0.0},
+                             1e-7 * (1.0 + 1e-3 * ++count),
+                             {0.2, -0.1, s.dimension == 3 ? 0.3 : 0.0},
+                             0.0});
     if (v.axisymmetric)
       for (auto& seed : seeds) seed.velocity[0] = 0.0;  // a ring that widens is strained
     auto solver = make_solver(s, seeds);
@@ -223,7 +235,8 @@ TEST(Solver, ParticlesOnFacesAndCornersOfCellsAreLikeAnyOther) {
     ASSERT_EQ(open.size(), seeds.size());
     for (std::size_t p = 0; p < open.size(); ++p)
       for (int a = 0; a < s.dimension; ++a) {
-        ASSERT_NEAR(open.velocity(a)[p], seeds[0].velocity[static_cast<std::size_t>(a)], 500.0 * unit_of(v)) << name_of(v);
+        ASSERT_NEAR(open.velocity(a)[p], seeds[0].velocity[static_cast<std::size_t>(a)], 500.0 * unit_of(v))
+            << name_of(v);
         ASSERT_GE(open.within(a)[p], 0.0) << name_of(v);
         ASSERT_LT(open.within(a)[p], 1.0) << name_of(v);
       }
@@ -369,7 +382,8 @@ TEST(Solver, AHalfColumnBesideAMirrorIsHalfOfTheWholeColumn) {
       const double x = b.position(0, p);
       (x > 0.0 ? right : left).push_back({b.mass()[p], {std::abs(x), b.position(1, p)}});
     }
-    for (std::size_t p = 0; p < a.size(); ++p) alone.push_back({a.mass()[p], {a.position(0, p), a.position(1, p)}});
+    for (std::size_t p = 0; p < a.size(); ++p)
+      alone.push_back({a.mass()[p], {a.position(0, p), a.position(1, p)}});
     ASSERT_EQ(right.size(), alone.size());
     ASSERT_EQ(left.size(), alone.size());
     for (auto* side : {&right, &left, &alone}) std::sort(side->begin(), side->end());
@@ -388,7 +402,8 @@ TEST(Solver, EmptySpaceBetweenBodiesCostsNothing) {
   const SolverSettings s = concrete({3, false, Transfer::quadratic_apic, true});
   const auto bytes = [&](int apart) {
     auto seeds = block(s, {0, 0, 0}, {4, 4, 4}, 2);
-    for (auto& seed : block(s, {apart, apart, apart}, {apart + 4, apart + 4, apart + 4}, 2)) seeds.push_back(seed);
+    for (auto& seed : block(s, {apart, apart, apart}, {apart + 4, apart + 4, apart + 4}, 2))
+      seeds.push_back(seed);
     auto solver = make_solver(s, seeds);
     solver->step(1e-4, weightless);
     EXPECT_EQ(solver->occupied_cells(), 128u);
@@ -419,13 +434,15 @@ TEST(Solver, WhatIsNotFiniteIsAnError) {
     const SolverSettings s = concrete(v);
     auto seeds = block(s, {5, 5, 5}, {8, 8, 8}, 2);
     seeds[7].velocity[1] = nan;
-    EXPECT_THROW(make_solver(s, seeds)->step(1e-4, weightless), runs::NumericsError) << name_of(v) << ", velocity";
+    EXPECT_THROW(make_solver(s, seeds)->step(1e-4, weightless), runs::NumericsError)
+        << name_of(v) << ", velocity";
     seeds[7].velocity[1] = 0.0;
     auto solver = make_solver(s, seeds);
     EXPECT_NO_THROW(solver->step(1e-4, weightless)) << name_of(v);
     Open open(*solver, s);
     open.deviator(1)[3] = nan;
-    EXPECT_THROW(make_solver(s, open.state)->step(1e-4, weightless), runs::NumericsError) << name_of(v) << ", stress";
+    EXPECT_THROW(make_solver(s, open.state)->step(1e-4, weightless), runs::NumericsError)
+        << name_of(v) << ", stress";
     EXPECT_THROW(solver->step(1e-4, {nan, 0.0, 0.0}), runs::NumericsError) << name_of(v) << ", acceleration";
   }
 }

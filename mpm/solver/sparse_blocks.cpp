@@ -21,7 +21,8 @@ int local_index(int dimension, const CellIndex& in_block) {
 }
 
 CellIndex local_coordinates(int dimension, int local) {
-  return dimension == 3 ? CellIndex{local / 16, local / 4 % 4, local % 4} : CellIndex{local / 4, local % 4, 0};
+  return dimension == 3 ? CellIndex{local / 16, local / 4 % 4, local % 4}
+                        : CellIndex{local / 4, local % 4, 0};
 }
 
 }  // namespace
@@ -30,7 +31,8 @@ void SparseBlocks::wrap(std::array<std::int32_t, 3>& block) const {
   for (int a = 0; a < axes(); ++a) {
     const AxisBounds& b = bounds_[static_cast<std::size_t>(a)];
     if (!b.periodic) continue;
-    const std::int32_t first = floor_divide(b.lower_cell), period = (b.upper_cell - b.lower_cell) / block_edge;
+    const std::int32_t first = floor_divide(b.lower_cell),
+                       period = (b.upper_cell - b.lower_cell) / block_edge;
     auto& c = block[static_cast<std::size_t>(a)];
     c = first + ((c - first) % period + period) % period;
   }
@@ -42,7 +44,8 @@ std::uint32_t SparseBlocks::slot_at(const std::array<std::int32_t, 3>& block) co
 }
 
 std::uint32_t SparseBlocks::ensure_slot(const std::array<std::int32_t, 3>& block) {
-  const auto [it, fresh] = slot_of_block_.try_emplace(key_of(block), static_cast<std::uint32_t>(slots_.size()));
+  const auto [it, fresh] =
+      slot_of_block_.try_emplace(key_of(block), static_cast<std::uint32_t>(slots_.size()));
   if (fresh) {
     slots_.emplace_back();
     slots_.back().block = block;
@@ -50,7 +53,8 @@ std::uint32_t SparseBlocks::ensure_slot(const std::array<std::int32_t, 3>& block
   return it->second;
 }
 
-std::array<std::int32_t, 3> SparseBlocks::shifted(const std::array<std::int32_t, 3>& block, int delta, int sign) const {
+std::array<std::int32_t, 3> SparseBlocks::shifted(const std::array<std::int32_t, 3>& block, int delta,
+                                                  int sign) const {
   auto to = block;
   for (int a = 0; a < axes(); ++a)
     if (delta >> (axes() - 1 - a) & 1) to[static_cast<std::size_t>(a)] += sign;
@@ -73,7 +77,8 @@ void SparseBlocks::refresh_neighbours() {
   for (auto& slot : slots_)
     for (int delta = 0; delta < neighbours; ++delta) {
       const std::uint32_t from = slot_at(shifted(slot.block, delta, -1));
-      slot.minus[static_cast<std::size_t>(delta)] = from != no_slot && !slots_[from].list.empty() ? from : no_slot;
+      slot.minus[static_cast<std::size_t>(delta)] =
+          from != no_slot && !slots_[from].list.empty() ? from : no_slot;
     }
 }
 
@@ -102,7 +107,8 @@ void SparseBlocks::build(const std::vector<CellIndex>& cells) {
   fullest_cell_ = 0;
   for (std::size_t s = 0; s < members.size(); ++s) sort_list(static_cast<std::uint32_t>(s), members[s]);
   for (const auto& slot : slots_)
-    for (std::size_t c = 0; c < 64; ++c) fullest_cell_ = std::max<std::size_t>(fullest_cell_, slot.start[c + 1] - slot.start[c]);
+    for (std::size_t c = 0; c < 64; ++c)
+      fullest_cell_ = std::max<std::size_t>(fullest_cell_, slot.start[c + 1] - slot.start[c]);
   refresh_neighbours();
 }
 
@@ -133,7 +139,8 @@ void SparseBlocks::rebuild_list(std::uint32_t slot, std::vector<std::uint32_t>& 
 std::vector<std::uint32_t> SparseBlocks::sorted_order() const {
   std::vector<std::uint32_t> order;
   order.reserve(owner_.size());
-  for (const auto slot : occupied_) order.insert(order.end(), slots_[slot].list.begin(), slots_[slot].list.end());
+  for (const auto slot : occupied_)
+    order.insert(order.end(), slots_[slot].list.begin(), slots_[slot].list.end());
   return order;
 }
 
@@ -202,7 +209,8 @@ void SparseBlocks::relocate(std::vector<Held>& held, int threads) {
   for (const auto slot : touched_) {
     const Slot& s = slots_[slot];
     if (s.list.empty()) occupancy_changed = true;
-    for (std::size_t c = 0; c < 64; ++c) fullest_cell_ = std::max<std::size_t>(fullest_cell_, s.start[c + 1] - s.start[c]);
+    for (std::size_t c = 0; c < 64; ++c)
+      fullest_cell_ = std::max<std::size_t>(fullest_cell_, s.start[c + 1] - s.start[c]);
   }
   if (occupancy_changed) refresh_neighbours();
 }

@@ -11,14 +11,15 @@ namespace flowrest::mpm {
 
 using CellIndex = std::array<std::int32_t, 3>;  ///< global cell coordinates; the third is 0 in two dimensions
 
-/// The occupied blocks of the background grid, which particles lie in which of their cells, and the neighbourhoods. Only
-/// blocks that hold particles, and those their nodes reach into, exist. Everything that follows from it (the order of
-/// particles within a cell, of blocks in sums) depends on the history of the motion alone, not on threads or on where a
-/// particle lies in memory.
+/// The occupied blocks of the background grid, which particles lie in which of their cells, and the
+/// neighbourhoods. Only blocks that hold particles, and those their nodes reach into, exist. Everything that
+/// follows from it (the order of particles within a cell, of blocks in sums) depends on the history of the
+/// motion alone, not on threads or on where a particle lies in memory.
 class SparseBlocks {
  public:
   SparseBlocks() = default;
-  SparseBlocks(int dimension, const std::array<AxisBounds, 3>& bounds) : dimension_(dimension), bounds_(bounds) {}
+  SparseBlocks(int dimension, const std::array<AxisBounds, 3>& bounds)
+      : dimension_(dimension), bounds_(bounds) {}
 
   /// Builds everything anew from each particle's cell; within a cell, particles keep their order.
   void build(const std::vector<CellIndex>& cells);
@@ -28,8 +29,9 @@ class SparseBlocks {
   /// To be called when particles have been rearranged by sorted_order().
   void particles_rearranged();
 
-  /// Moves the particles that the last step's kernels reported (in the blocks' mover lists) to their new cells. A particle
-  /// that would pass a plane wall stays in its cell: those are reported as (particle, axis, side) in `held`.
+  /// Moves the particles that the last step's kernels reported (in the blocks' mover lists) to their new
+  /// cells. A particle that would pass a plane wall stays in its cell: those are reported as (particle, axis,
+  /// side) in `held`.
   struct Held {
     std::uint32_t particle;
     int axis;
@@ -78,9 +80,9 @@ class SparseBlocks {
   std::array<AxisBounds, 3> bounds_{};
   std::vector<Slot> slots_;
   std::unordered_map<std::uint64_t, std::uint32_t> slot_of_block_;
-  std::vector<std::uint32_t> occupied_;     ///< ascending in block coordinates
-  std::vector<std::uint32_t> owner_;        ///< slot of each particle
-  std::vector<std::uint8_t> local_;         ///< cell within the block of each particle
+  std::vector<std::uint32_t> occupied_;  ///< ascending in block coordinates
+  std::vector<std::uint32_t> owner_;     ///< slot of each particle
+  std::vector<std::uint8_t> local_;      ///< cell within the block of each particle
   std::vector<std::uint32_t> touched_;
   std::size_t fullest_cell_ = 0;
 };

@@ -30,7 +30,8 @@ struct BruteForce {
     return b;
   }
 
-  /// Moves each particle, holding it at walls and wrapping it where periodic. Residents of a block stay before arrivals.
+  /// Moves each particle, holding it at walls and wrapping it where periodic. Residents of a block stay
+  /// before arrivals.
   std::set<std::pair<std::uint32_t, int>> move(const std::vector<std::array<int, 3>>& shifts) {
     std::set<std::pair<std::uint32_t, int>> held;
     std::vector<bool> arrived(cells.size(), false);
@@ -43,7 +44,8 @@ struct BruteForce {
         if (b.periodic) {
           const int period = b.upper_cell - b.lower_cell;
           to = b.lower_cell + ((to - b.lower_cell) % period + period) % period;
-        } else if ((b.lower != PlaneWall::none && to < b.lower_cell) || (b.upper != PlaneWall::none && to >= b.upper_cell)) {
+        } else if ((b.lower != PlaneWall::none && to < b.lower_cell) ||
+                   (b.upper != PlaneWall::none && to >= b.upper_cell)) {
           held.insert({p, a});
           continue;
         }
@@ -80,8 +82,10 @@ void expect_agreement(SparseBlocks& blocks, const BruteForce& truth, int round) 
     for (int c = 0; c < count; ++c)
       for (std::uint32_t i = v.start[c]; i < v.start[c + 1]; ++i) {
         const CellIndex cell = truth.cells[v.list[i]];
-        const CellIndex inside = truth.dimension == 3 ? CellIndex{c / 16, c / 4 % 4, c % 4} : CellIndex{c / 4, c % 4, 0};
-        for (std::size_t a = 0; a < 3; ++a) ASSERT_EQ(4 * origin[a] + inside[a], cell[a]) << "round " << round;
+        const CellIndex inside =
+            truth.dimension == 3 ? CellIndex{c / 16, c / 4 % 4, c % 4} : CellIndex{c / 4, c % 4, 0};
+        for (std::size_t a = 0; a < 3; ++a)
+          ASSERT_EQ(4 * origin[a] + inside[a], cell[a]) << "round " << round;
         ASSERT_EQ(blocks.cell_of(v.list[i]), cell);
       }
     bool contiguous = true;
@@ -119,12 +123,13 @@ void expect_agreement(SparseBlocks& blocks, const BruteForce& truth, int round) 
   for (const auto& [slot, block] : reached)
     for (int delta = 0; delta < neighbours; ++delta) {
       const auto from = slots.find(shifted(block, delta, -1));
-      ASSERT_EQ(blocks.node_view(slot).minus[delta], from == slots.end() ? no_slot : from->second) << "round " << round;
+      ASSERT_EQ(blocks.node_view(slot).minus[delta], from == slots.end() ? no_slot : from->second)
+          << "round " << round;
     }
 }
 
-void wander(int dimension, const std::array<AxisBounds, 3>& bounds, const std::vector<CellIndex>& start, int rounds,
-            double liveliness, std::uint64_t seed) {
+void wander(int dimension, const std::array<AxisBounds, 3>& bounds, const std::vector<CellIndex>& start,
+            int rounds, double liveliness, std::uint64_t seed) {
   Random random(seed);
   SparseBlocks blocks(dimension, bounds);
   blocks.build(start);
@@ -181,7 +186,8 @@ std::vector<CellIndex> cloud(int dimension, int count, int lowest, int highest, 
   Random random(seed);
   std::vector<CellIndex> cells(static_cast<std::size_t>(count));
   for (auto& c : cells)
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) c[a] = random.integer(lowest, highest);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+      c[a] = random.integer(lowest, highest);
   return cells;
 }
 
@@ -203,7 +209,8 @@ TEST(SparseBlocks, RelocationAgreesWithBruteForceBetweenWalls) {
 
 TEST(SparseBlocks, RelocationAgreesWithBruteForceRoundAPeriodicAxis) {
   std::array<AxisBounds, 3> bounds{};
-  bounds[0] = {PlaneWall::none, PlaneWall::none, 0, 4, true};  // a block that is its own neighbour, as in a duct
+  bounds[0] = {PlaneWall::none, PlaneWall::none, 0, 4,
+               true};  // a block that is its own neighbour, as in a duct
   bounds[1] = {PlaneWall::no_slip, PlaneWall::no_slip, 0, 10, false};
   wander(2, bounds, cloud(2, 200, 0, 3, 9), 60, 0.4, 10);
   bounds[0] = {PlaneWall::none, PlaneWall::none, -8, 8, true};

@@ -20,7 +20,9 @@ struct Variant {
 };
 
 inline std::string name_of(const Variant& v) {
-  return std::string(v.axisymmetric ? "axisymmetric" : v.dimension == 3 ? "3D" : "2D") +
+  return std::string(v.axisymmetric     ? "axisymmetric"
+                     : v.dimension == 3 ? "3D"
+                                        : "2D") +
          (v.transfer == Transfer::quadratic_apic ? ", quadratic APIC" : ", linear FLIP") +
          (v.single_precision ? ", float" : ", double");
 }
@@ -61,10 +63,11 @@ inline double usual_step(const SolverSettings& s) {
   return 0.7 * s.cell / std::sqrt((s.state.bulk_modulus + 4.0 / 3.0 * s.state.shear_modulus) / s.density);
 }
 
-/// A block of whole cells [first, last), `per_axis` particles along each axis in each, jittered where `random` is given.
-/// Each particle's volume differs a little, so that its mass tells it apart whatever order particles come in.
-inline std::vector<Seed> block(const SolverSettings& s, const CellIndex& first, const CellIndex& last, int per_axis,
-                               Random* random = nullptr) {
+/// A block of whole cells [first, last), `per_axis` particles along each axis in each, jittered where
+/// `random` is given. Each particle's volume differs a little, so that its mass tells it apart whatever order
+/// particles come in.
+inline std::vector<Seed> block(const SolverSettings& s, const CellIndex& first, const CellIndex& last,
+                               int per_axis, Random* random = nullptr) {
   std::vector<Seed> seeds;
   const int depth = s.dimension == 3 ? per_axis : 1;
   const double volume = std::pow(s.cell / per_axis, s.dimension);
@@ -92,7 +95,8 @@ inline std::vector<Seed> restless_block(const SolverSettings& s, Random& random,
   const int edge = s.dimension == 3 ? 6 : 10;
   auto seeds = block(s, {21, 17, 18}, {21 + edge, 17 + edge, 18 + edge}, 2, &random);
   for (auto& seed : seeds)
-    for (std::size_t a = 0; a < static_cast<std::size_t>(s.dimension); ++a) seed.velocity[a] = random.between(-speed, speed);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(s.dimension); ++a)
+      seed.velocity[a] = random.between(-speed, speed);
   return seeds;
 }
 
@@ -104,7 +108,10 @@ struct Open {
   bool affine_stored;
 
   Open(SolverState of, const SolverSettings& s)
-      : state(std::move(of)), dimension(s.dimension), cell(s.cell), affine_stored(s.transfer == Transfer::quadratic_apic) {}
+      : state(std::move(of)),
+        dimension(s.dimension),
+        cell(s.cell),
+        affine_stored(s.transfer == Transfer::quadratic_apic) {}
   Open(Solver& solver, const SolverSettings& s) : Open(solver.state(), s) {}
 
   std::size_t size() const { return state.cells.size(); }
@@ -127,7 +134,8 @@ struct Open {
   std::vector<std::size_t> by_mass() {
     std::vector<std::size_t> order(size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return mass()[a] < mass()[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return mass()[a] < mass()[b]; });
     return order;
   }
 
@@ -136,7 +144,8 @@ struct Open {
 };
 
 /// The same solver with random stresses of about `size` Pa in it.
-inline std::unique_ptr<Solver> stressed(std::unique_ptr<Solver> solver, const SolverSettings& s, Random& random, double size) {
+inline std::unique_ptr<Solver> stressed(std::unique_ptr<Solver> solver, const SolverSettings& s,
+                                        Random& random, double size) {
   Open open(*solver, s);
   for (int c = 0; c < open.components(); ++c)
     for (double& v : open.deviator(c)) v = random.between(-size, size);

@@ -13,11 +13,12 @@ struct Gathered {
   T* affine[Dim][Dim];
 };
 
-/// Interpolates node velocities (of one record) to the particles [first, first + count) of one cell, a register of
-/// particles at a time. Lanes past the cell's end hold rubbish that the next cell, or the padding, takes.
+/// Interpolates node velocities (of one record) to the particles [first, first + count) of one cell, a
+/// register of particles at a time. Lanes past the cell's end hold rubbish that the next cell, or the
+/// padding, takes.
 template <class T, int Dim, class Shape, bool Value, bool Gradient, bool Affine>
-void gather(const T* arena_cell, int node_stride, const T* const* position, const Weights<T, Dim, Shape>& w, int first,
-            int count, const Gathered<T, Dim>& out) {
+void gather(const T* arena_cell, int node_stride, const T* const* position, const Weights<T, Dim, Shape>& w,
+            int first, int count, const Gathered<T, Dim>& out) {
   constexpr int nodes = Shape::nodes;
   constexpr int lanes = static_cast<int>(sizeof(Lanes<T>) / sizeof(T));
   constexpr int last = Dim - 1;
@@ -25,10 +26,12 @@ void gather(const T* arena_cell, int node_stride, const T* const* position, cons
   const L zero = {};
   for (int q = first; q < first + count; q += lanes) {
     for (int c = 0; c < Dim; ++c) {
-      L value = zero, slope0 = zero, slope1 = zero, slope2 = zero, moment0 = zero, moment1 = zero, moment2 = zero;
+      L value = zero, slope0 = zero, slope1 = zero, slope2 = zero, moment0 = zero, moment1 = zero,
+        moment2 = zero;
 #pragma GCC unroll 3
       for (int i = 0; i < nodes; ++i) {
-        // Sums over the remaining axes of this slab: plain, with slopes, and with offsets (0, +-1 for quadratic nodes).
+        // Sums over the remaining axes of this slab: plain, with slopes, and with offsets (0, +-1 for
+        // quadratic nodes).
         L plain = zero, with_slope1 = zero, with_slope2 = zero, with_offset1 = zero, with_offset2 = zero;
 #pragma GCC unroll 3
         for (int j = 0; j < (Dim == 3 ? nodes : 1); ++j) {

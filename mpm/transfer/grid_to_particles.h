@@ -7,10 +7,11 @@
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// Divergence at the cells' centres, given to all their particles: the published B-bar (Yu et al. 2026, section 4).
+/// Divergence at the cells' centres, given to all their particles: the published B-bar (Yu et al. 2026,
+/// section 4).
 template <class T, int Dim, bool Axisymmetric, class Shape>
-void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile, const T* arena, int node_stride,
-                         const T* radial, T* dilatation) {
+void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile, const T* arena,
+                         int node_stride, const T* radial, T* dilatation) {
   const T half = T(0.5), per_cell = T(1) / step.cell;
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
     const int n = tile.cell_count(cell), first = tile.cell_first(cell);
@@ -21,7 +22,8 @@ void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile
       for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
         for (int k = 0; k < Shape::nodes; ++k) {
           const T* v = base + arena_index<Dim>(i, j, k) * node_stride;
-          const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1), wk = Shape::weight(k, half);
+          const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1),
+                  wk = Shape::weight(k, half);
           divergence += v[0] * Shape::slope(i, half) * wj * wk + v[Dim - 1] * wi * wj * Shape::slope(k, half);
           if constexpr (Dim == 3) divergence += v[1] * wi * Shape::slope(j, half) * wk;
           if constexpr (Axisymmetric) radial_velocity += v[0] * wi * wk;
@@ -34,8 +36,8 @@ void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile
 
 /// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
 template <class T, int Dim, bool Axisymmetric, class Shape>
-void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, int node_stride, const T* const* x,
-                 const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
+void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, int node_stride,
+                 const T* const* x, const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
   const int count = tile.count;
   const T per_cell = T(1) / step.cell;
   for (int i = 0; i < Dim; ++i)
@@ -71,8 +73,8 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
 
 /// Volume, stress and flocculation of a tile after the step, and the sums that go with them.
 template <class T, int Dim, bool Axisymmetric>
-void update_stress(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, const T* mass,
-                   Strain<T, Dim>& s) {
+void update_stress(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
+                   const T* mass, Strain<T, Dim>& s) {
   constexpr int components = Deviator<T, Dim>::components;
   const int count = tile.count;
   for (int c = 0; c < components; ++c) s.deviator[c] = tile.open(particles.deviator[c]);
@@ -130,8 +132,8 @@ void note_mover(Tile<T, Dim>& tile, T* const* x, int q) {
 
 /// Moves a tile's particles with the velocities `advection`.
 template <class T, int Dim, class Shape>
-void move_particles(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, T* const* x,
-                    const T* const* advection, const T* mass) {
+void move_particles(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
+                    T* const* x, const T* const* advection, const T* mass) {
   const int count = tile.count;
   // Counts axes along which a particle left its cell; a value that is not finite fails every comparison.
   T* left = tile.fresh();
@@ -161,8 +163,9 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
 
 /// Strain, stress and motion of a tile whose velocity gradients per cell are gathered.
 template <class T, int Dim, bool Axisymmetric, class Shape>
-void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile, const T* arena,
-                     int node_stride, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection) {
+void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
+                     const T* arena, int node_stride, T* const* x, const Gathered<T, Dim>& gathered,
+                     const T* const* advection) {
   Strain<T, Dim> s;
   const T* mass = tile.open(particles.mass);
   s.ratio = tile.open(particles.volume_ratio);
@@ -172,8 +175,8 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
 }
 
 template <class T, int Dim, bool Axisymmetric>
-void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* /*arenas*/,
-                       const T* nodes, const Workspace<T>& workspace) {
+void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
+                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * record];
   load_arena<T, Dim, Quadratic>(step, block, nodes, 1, arena);
   Tile<T, Dim> tile(block, workspace);
@@ -185,8 +188,8 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, true, true, true);
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        gather<T, Dim, Quadratic, true, true, true>(arena + cell_base<T, Dim>(cell) * record, record, x, weights,
-                                                    tile.cell_first(cell), tile.cell_count(cell), g);
+        gather<T, Dim, Quadratic, true, true, true>(arena + cell_base<T, Dim>(cell) * record, record, x,
+                                                    weights, tile.cell_first(cell), tile.cell_count(cell), g);
     for (int c = 0; c < Dim; ++c) {
       tile.close(particles.velocity[c], g.value[c]);
       for (int a = 0; a < Dim; ++a) tile.close(particles.affine[c * Dim + a], g.affine[c][a]);
@@ -195,10 +198,11 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
   }
 }
 
-/// FLIP's velocities: v <- keep (v + dv) + (1 - keep) v_grid, then their momentum mapped back for the strain (MUSL).
+/// FLIP's velocities: v <- keep (v + dv) + (1 - keep) v_grid, then their momentum mapped back for the strain
+/// (MUSL).
 template <class T, int Dim>
-void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* arenas,
-                       const T* nodes, const Workspace<T>& workspace) {
+void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
+                       const BlockView& block, T* arenas, const T* nodes, const Workspace<T>& workspace) {
   constexpr int values = 2 * record;
   alignas(64) T arena[nodes_per_arena<Dim> * values];
   load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
@@ -226,7 +230,8 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     for (int c = 0; c < Dim; ++c) {
 #pragma omp simd
       for (int q = 0; q < tile.count; ++q)
-        v[c][q] = step.keep * (v[c][q] + fresh.value[c][q] - old.value[c][q]) + (T(1) - step.keep) * fresh.value[c][q];
+        v[c][q] = step.keep * (v[c][q] + fresh.value[c][q] - old.value[c][q]) +
+                  (T(1) - step.keep) * fresh.value[c][q];
       tile.close(particles.velocity[c], v[c]);
       tile.close(particles.advection[c], fresh.value[c]);
     }
@@ -243,8 +248,9 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
 }
 
 template <class T, int Dim, bool Axisymmetric>
-void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
-                           T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
+void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
+                           const BlockView& block, T* /*arenas*/, const T* nodes,
+                           const Workspace<T>& workspace) {
   constexpr int values = 2 * record;
   alignas(64) T arena[nodes_per_arena<Dim> * values];
   load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
@@ -258,8 +264,9 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
     const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, Axisymmetric, true, false);
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * values, values, x, weights,
-                                                          tile.cell_first(cell), tile.cell_count(cell), g);
+        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * values, values, x,
+                                                          weights, tile.cell_first(cell),
+                                                          tile.cell_count(cell), g);
     deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, values, x, g, advection);
   }
 }

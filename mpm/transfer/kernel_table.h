@@ -10,10 +10,20 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 template <class T, int Dim, bool Axisymmetric>
 Kernels<T> make_kernels(Transfer transfer) {
   if (transfer == Transfer::quadratic_apic)
-    return {Dim, 1, particles_to_grid<T, Dim, Axisymmetric, Quadratic, false>, update_nodes<T, Dim, false, false>,
-            apic_to_particles<T, Dim, Axisymmetric>, nullptr, nullptr};
-  return {Dim, 2, particles_to_grid<T, Dim, Axisymmetric, Linear, true>, update_nodes<T, Dim, true, false>,
-          flip_to_particles<T, Dim>, update_nodes<T, Dim, true, true>, remapped_to_particles<T, Dim, Axisymmetric>};
+    return {Dim,
+            1,
+            particles_to_grid<T, Dim, Axisymmetric, Quadratic, false>,
+            update_nodes<T, Dim, false, false>,
+            apic_to_particles<T, Dim, Axisymmetric>,
+            nullptr,
+            nullptr};
+  return {Dim,
+          2,
+          particles_to_grid<T, Dim, Axisymmetric, Linear, true>,
+          update_nodes<T, Dim, true, false>,
+          flip_to_particles<T, Dim>,
+          update_nodes<T, Dim, true, true>,
+          remapped_to_particles<T, Dim, Axisymmetric>};
 }
 
 template <class T>

@@ -5,8 +5,8 @@
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// Sums the arenas that share a block of nodes, in a fixed order, and turns momentum into velocity. Records after it:
-/// APIC (mass, velocity); FLIP (mass, new velocity), (0, old velocity).
+/// Sums the arenas that share a block of nodes, in a fixed order, and turns momentum into velocity. Records
+/// after it: APIC (mass, velocity); FLIP (mass, new velocity), (0, old velocity).
 template <class T, int Dim, bool Flip, bool Remap>
 void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
   constexpr int records = Flip ? 2 : 1;
@@ -23,7 +23,9 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
       if (slot == no_slot) continue;
       const int i = c[0] + di * block_edge, j = c[1] + dj * block_edge, k = c[2] + dk * block_edge;
       if (i >= arena_edge || j >= arena_edge || k >= arena_edge) continue;
-      const T* from = arenas + (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * values;
+      const T* from =
+          arenas +
+          (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * values;
       for (int r = 0; r < (Remap ? 1 : records); ++r) sum[r] += record_at(from + r * record);
     }
     const T mass = sum[0][0];
@@ -41,16 +43,19 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
 
 /// Copies the nodes a block's particles can see into one arena and sets the walls' values.
 template <class T, int Dim, class Shape>
-void load_arena(const StepParameters<T>& step, const BlockView& block, const T* nodes, int records, T* arena) {
+void load_arena(const StepParameters<T>& step, const BlockView& block, const T* nodes, int records,
+                T* arena) {
   const int values = records * record;
   for (int i = 0; i < arena_edge; ++i)
     for (int j = 0; j < (Dim == 3 ? arena_edge : 1); ++j)
       for (int half = 0; half < 2; ++half) {
-        const int delta = Dim == 3 ? (i / block_edge) * 4 + (j / block_edge) * 2 + half : (i / block_edge) * 2 + half;
+        const int delta =
+            Dim == 3 ? (i / block_edge) * 4 + (j / block_edge) * 2 + half : (i / block_edge) * 2 + half;
         const int run = (half == 0 ? block_edge : arena_edge - block_edge) * values;
         T* to = arena + arena_index<Dim>(i, j, half * block_edge) * values;
         const std::uint32_t slot = block.plus[delta];
-        const int local = Dim == 3 ? (i % block_edge * block_edge + j % block_edge) * block_edge : i % block_edge * block_edge;
+        const int local = Dim == 3 ? (i % block_edge * block_edge + j % block_edge) * block_edge
+                                   : i % block_edge * block_edge;
         const T* from = nodes + (static_cast<std::size_t>(slot) * cells_per_block<Dim> + local) * values;
         for (int n = 0; n < run; ++n) to[n] = from[n];
       }

@@ -8,19 +8,19 @@
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// One particle's contribution to the node records around it, the product of the axes' weights times
-/// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the plain weight (its
-/// offset times the affine part, its slope times the stress).
+/// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the
+/// plain weight (its offset times the affine part, its slope times the stress).
 template <class T, int Dim, class Shape, bool Terms>
 struct Source {
   T value[4];
   T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][4];
 };
 
-/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The accumulators of a slab
-/// of nodes stay in registers over the particles.
+/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The
+/// accumulators of a slab of nodes stay in registers over the particles.
 template <class T, int Dim, class Shape, bool Terms>
-void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>* source, const Weights<T, Dim, Shape>& w,
-             int first, int count) {
+void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>* source,
+             const Weights<T, Dim, Shape>& w, int first, int count) {
   constexpr int nodes = Shape::nodes;
   constexpr int rows = Dim == 3 ? nodes : 1;
   constexpr int last = Dim - 1;
@@ -64,8 +64,8 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>*
 
 /// Mass, momentum and the impulse of the step's forces of one block's particles, into that block's arena.
 template <class T, int Dim, bool Axisymmetric, class Shape, bool Flip>
-void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block, T* arenas,
-                       const T* /*nodes*/, const Workspace<T>& workspace) {
+void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles,
+                       const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
   constexpr int records = Flip ? 2 : 1;
   constexpr int arena_values = nodes_per_arena<Dim> * records * record;
   using Momentum = Source<T, Dim, Shape, !Flip>;  // FLIP: (m, m v) alone
@@ -102,15 +102,18 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       per_radius = tile.fresh();
       radial_cells(tile, radial);
 #pragma omp simd
-      for (int q = 0; q < count; ++q) per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
+      for (int q = 0; q < count; ++q)
+        per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
     }
 
-    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the workspace's
-    // rest, and what only they need is read from the particles' arrays straight away.
-    constexpr int source_values = static_cast<int>((sizeof(Momentum) + (Flip ? sizeof(Force) : 0)) / sizeof(T));
+    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
+    // workspace's rest, and what only they need is read from the particles' arrays straight away.
+    constexpr int source_values =
+        static_cast<int>((sizeof(Momentum) + (Flip ? sizeof(Force) : 0)) / sizeof(T));
     T* source_memory = tile.memory + tile.capacity * tile.used;
     Momentum* momentum = reinterpret_cast<Momentum*>(source_memory);
-    Force* force = reinterpret_cast<Force*>(source_memory + static_cast<int>(sizeof(Momentum) / sizeof(T)) * tile.capacity);
+    Force* force = reinterpret_cast<Force*>(source_memory +
+                                            static_cast<int>(sizeof(Momentum) / sizeof(T)) * tile.capacity);
     static_assert(source_values + 30 <= workspace_arrays);
     const T dt = step.step, impulse_per_cell = dt / step.cell;
     const std::uint32_t* list = block.list + tile.first;
@@ -120,8 +123,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       if constexpr (Dim == 2) {
         dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id]};
       } else {
-        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id], particles.deviator[3][id],
-               particles.deviator[4][id]};
+        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id],
+               particles.deviator[3][id], particles.deviator[4][id]};
       }
       const T p = centroid ? T(0) : pressure[q];
       const T m = mass[q], scale = -volume[q] * impulse_per_cell;
@@ -144,7 +147,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         record_at(momentum[q].value) = moving;
         record_at(force[q].value) = forcing;
         for (int a = 0; a < Dim; ++a)
-          for (int n = 0; n < Shape::nodes; ++n) record_at(force[q].term[a][n]) = weights.slope[a][n][q] * stress[a];
+          for (int n = 0; n < Shape::nodes; ++n)
+            record_at(force[q].term[a][n]) = weights.slope[a][n][q] * stress[a];
       } else {
         record_at(momentum[q].value) = moving + forcing;
         for (int a = 0; a < Dim; ++a) {
@@ -152,7 +156,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
                                     Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
           for (int n = 0; n < Shape::nodes; ++n)
             record_at(momentum[q].term[a][n]) =
-                (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * affine + weights.slope[a][n][q] * stress[a];
+                (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * affine +
+                weights.slope[a][n][q] * stress[a];
         }
       }
     }
@@ -163,7 +168,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       const int first = tile.cell_first(cell);
       T* base = arena + cell_base<T, Dim>(cell) * records * record;
       scatter<T, Dim, Shape, !Flip>(base, records * record, momentum, weights, first, n);
-      if constexpr (Flip) scatter<T, Dim, Shape, true>(base + record, records * record, force, weights, first, n);
+      if constexpr (Flip)
+        scatter<T, Dim, Shape, true>(base + record, records * record, force, weights, first, n);
       if (centroid) {
         // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
         T thrust = T(0);
@@ -174,7 +180,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
           for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
             for (int k = 0; k < Shape::nodes; ++k) {
               const T half = T(0.5);
-              const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1), wk = Shape::weight(k, half);
+              const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1),
+                      wk = Shape::weight(k, half);
               T* to = base + arena_index<Dim>(i, j, k) * records * record + (Flip ? record : 0) + 1;
               to[0] += push * Shape::slope(i, half) * wj * wk + hoop * wi * wj * wk;
               if constexpr (Dim == 3) to[1] += push * wi * Shape::slope(j, half) * wk;

@@ -2,12 +2,12 @@
 
 #include "mpm/simd/math.h"
 
-/// Shape functions of one axis over one cell. `weight`, `slope` (d weight / d position, per cell) and the node's
-/// `offset` from the particle in cells, all as functions of the position in [0, 1) of the cell.
+/// Shape functions of one axis over one cell. `weight`, `slope` (d weight / d position, per cell) and the
+/// node's `offset` from the particle in cells, all as functions of the position in [0, 1) of the cell.
 namespace flowrest::mpm {
 
-/// Quadratic B-splines with a node at each cell's centre, so that a cell is a knot span: all its particles see the same
-/// three nodes per axis, its own and both neighbours'.
+/// Quadratic B-splines with a node at each cell's centre, so that a cell is a knot span: all its particles
+/// see the same three nodes per axis, its own and both neighbours'.
 struct Quadratic {
   static constexpr int nodes = 3;
   template <class T>
@@ -40,8 +40,8 @@ struct Linear {
   static FLOWREST_INLINE T slope(int node, T) {
     return node == 0 ? T(-1) : T(1);
   }
-  /// As above. Slopes stay one where a weight vanishes, so a particle right on a face would see the velocity gradient to
-  /// a node that nothing has given a mass.
+  /// As above. Slopes stay one where a weight vanishes, so a particle right on a face would see the velocity
+  /// gradient to a node that nothing has given a mass.
   static constexpr double margin = 0x1p-20;
 };
 

@@ -31,7 +31,9 @@ struct Tile {
     if (first_cell == cells) return false;
     first = static_cast<int>(block.start[first_cell]);
     last_cell = first_cell + 1;
-    while (last_cell < cells && static_cast<int>(block.start[last_cell + 1]) - first <= capacity - tile_padding) ++last_cell;
+    while (last_cell < cells &&
+           static_cast<int>(block.start[last_cell + 1]) - first <= capacity - tile_padding)
+      ++last_cell;
     count = static_cast<int>(block.start[last_cell]) - first;
     used = 0;
     return true;
@@ -103,8 +105,8 @@ FLOWREST_INLINE int cell_base(int cell) {
   return arena_index<Dim>(c[0], c[1], c[2]);
 }
 
-/// Pressure to deposit with each particle of a cell: the volume-weighted average over the cell, the adjoint of the averaged
-/// divergence (B-bar by cell average).
+/// Pressure to deposit with each particle of a cell: the volume-weighted average over the cell, the adjoint
+/// of the averaged divergence (B-bar by cell average).
 template <class T, int Dim>
 void average_over_cells(const Tile<T, Dim>& tile, const T* volume, T* value) {
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {

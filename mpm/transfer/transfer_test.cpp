@@ -39,7 +39,8 @@ GridSums to_grid(const SolverSettings& s, const std::vector<Seed>& seeds, const 
   blocks.build(cells);
   const Kernels<T> stages = kernels<T>(set, s.dimension, s.axisymmetric, s.transfer);
   const std::size_t values = static_cast<std::size_t>(stages.records) * record;
-  AlignedArray<T> arenas(blocks.slot_count() * static_cast<std::size_t>(power(arena_edge, s.dimension)) * values);
+  AlignedArray<T> arenas(blocks.slot_count() * static_cast<std::size_t>(power(arena_edge, s.dimension)) *
+                         values);
   const auto nodes_per_block = static_cast<std::size_t>(power(block_edge, s.dimension));
   AlignedArray<T> nodes(blocks.slot_count() * nodes_per_block * values);
   AlignedArray<T> memory(static_cast<std::size_t>(workspace_arrays) * 96);
@@ -49,7 +50,8 @@ GridSums to_grid(const SolverSettings& s, const std::vector<Seed>& seeds, const 
   step.cell = static_cast<T>(s.cell);
   step.density = static_cast<T>(s.density);
   for (std::size_t a = 0; a < 3; ++a) step.acceleration[a] = static_cast<T>(acceleration[a]);
-  for (const auto slot : blocks.occupied()) stages.particles_to_grid(step, v, blocks.view(slot), arenas.data(), nodes.data(), workspace);
+  for (const auto slot : blocks.occupied())
+    stages.particles_to_grid(step, v, blocks.view(slot), arenas.data(), nodes.data(), workspace);
   for (std::uint32_t slot = 0; slot < blocks.slot_count(); ++slot)
     stages.update_nodes(step, blocks.node_view(slot), arenas.data(), nodes.data());
   GridSums sums;
@@ -139,7 +141,8 @@ TEST(ParticlesToGrid, TheGridHoldsTheParticlesMassAndMomentumAndTheStepsImpulse)
       EXPECT_NEAR(sums.mass, mass, 16.0 * unit * mass) << name_of(v) << ", " << set;
       for (std::size_t a = 0; a < static_cast<std::size_t>(s.dimension); ++a) {
         if (v.axisymmetric && a == 0) continue;  // the hoop stress pulls inwards
-        EXPECT_NEAR(sums.momentum[a], momentum[a], 16.0 * unit * scale) << name_of(v) << ", " << set << ", axis " << a;
+        EXPECT_NEAR(sums.momentum[a], momentum[a], 16.0 * unit * scale)
+            << name_of(v) << ", " << set << ", axis " << a;
       }
     }
 }

@@ -1,5 +1,5 @@
-// Plane Poiseuille flow (Yu et al. 2026, section 3.3) against what is known exactly. Every bound is stated beside what was
-// measured, on AVX-512 in double precision.
+// Plane Poiseuille flow (Yu et al. 2026, section 3.3) against what is known exactly. Every bound is stated
+// beside what was measured, on AVX-512 in double precision.
 #include <cmath>
 
 #include "mpm/output/checkpoint.h"
@@ -18,7 +18,8 @@ constexpr double height = 0.5, density = 2000.0, viscosity = 30.0, force = 2000.
 /// Steady velocity of a Bingham fluid, Yu et al. 2026, Eqs. 48 to 50. m/s
 double exact_velocity(double y, double yield, double plastic_viscosity = viscosity) {
   const double plug = yield / force, from_middle = std::max(std::abs(y - 0.5 * height), plug);
-  return (force * (0.25 * height * height - from_middle * from_middle) - 2.0 * yield * (0.5 * height - from_middle)) /
+  return (force * (0.25 * height * height - from_middle * from_middle) -
+          2.0 * yield * (0.5 * height - from_middle)) /
          (2.0 * plastic_viscosity);
 }
 
@@ -35,7 +36,8 @@ double l2(const runs::Profile& profile, Exact exact) {
 }
 
 scenes::Scene duct(const std::vector<std::string>& more) {
-  return scenes::load_scene("poiseuille-step-down", {with({"mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
+  return scenes::load_scene("poiseuille-step-down",
+                            {with({"mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
 }
 
 std::string setting(const std::string& key, double value) { return key + "=" + std::to_string(value); }
@@ -57,19 +59,25 @@ double papanastasiou_creep(double driving, double yield, double m) {
   const double wall = 0.5 * driving * height, h = wall / intervals;
   double sum = 0.0;
   for (int i = 0; i <= intervals; ++i)
-    sum += (i == 0 || i == intervals ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * papanastasiou_rate(i * h, yield, m) * h / 3.0;
+    sum += (i == 0 || i == intervals ? 1.0
+            : i % 2 == 1             ? 4.0
+                                     : 2.0) *
+           papanastasiou_rate(i * h, yield, m) * h / 3.0;
   return sum / driving;
 }
 
-/// When a Bingham fluid between the plates stops, its force stepped down at zero from 2000 N/m3: the time at which its
-/// plug's velocity falls below `slow`, by finite differences over half the height, velocities and stresses staggered. The
-/// plug is held together by a stiff elasticity (twenty times the scene's), each step's stress relaxed to the flow law.
+/// When a Bingham fluid between the plates stops, its force stepped down at zero from 2000 N/m3: the time at
+/// which its plug's velocity falls below `slow`, by finite differences over half the height, velocities and
+/// stresses staggered. The plug is held together by a stiff elasticity (twenty times the scene's), each
+/// step's stress relaxed to the flow law.
 double stopping_time(double driving, double yield, double slow) {
   const int cells = 250;
   const double dy = 0.5 * height / cells, modulus = 20.0 * 34138.0;
   const double dt = 0.5 * dy / std::sqrt(modulus / density);
-  std::vector<double> velocity(cells), stress(cells + 1);  // y from the wall: velocity at centres, stress at faces
-  for (int i = 0; i < cells; ++i) velocity[static_cast<std::size_t>(i)] = exact_velocity((i + 0.5) * dy, yield);
+  std::vector<double> velocity(cells),
+      stress(cells + 1);  // y from the wall: velocity at centres, stress at faces
+  for (int i = 0; i < cells; ++i)
+    velocity[static_cast<std::size_t>(i)] = exact_velocity((i + 0.5) * dy, yield);
   for (int i = 0; i <= cells; ++i) stress[static_cast<std::size_t>(i)] = force * (0.5 * height - i * dy);
   double time = 0.0;
   while (velocity.back() > slow && time < 20.0) {
@@ -92,7 +100,8 @@ class Duct : public RunTest {};
 
 TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
   for (const auto& [yield, measured] : {std::pair{10.0, 2.03e-3}, std::pair{200.0, 2.74e-3}}) {
-    const auto scene = duct({setting("material.yield_stress", yield), "time.end=12", "output.checkpoint_interval=12"});
+    const auto scene =
+        duct({setting("material.yield_stress", yield), "time.end=12", "output.checkpoint_interval=12"});
     const std::string name = "yield " + std::to_string(yield);
     const auto run = run_and_read(scene, name);
     const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
@@ -109,15 +118,18 @@ TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
     }
     if (yield < 100.0) continue;  // 5 mm either side of the middle: narrower than a cell
     EXPECT_GT(in_plug, 1000);
-    EXPECT_EQ(fastest, 0.0) << "plastic shear rate in the plug, 1/s; at the wall it is " << (force * 0.25 - yield) / viscosity;
+    EXPECT_EQ(fastest, 0.0) << "plastic shear rate in the plug, 1/s; at the wall it is "
+                            << (force * 0.25 - yield) / viscosity;
   }
 }
 
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
-  // Measured 4.6e-4. At 200 Pa the lattice breaks up within seconds and the same run is at 1.7e-2, as jittered particles are.
+  // Measured 4.6e-4. At 200 Pa the lattice breaks up within seconds and the same run is at 1.7e-2, as
+  // jittered particles are.
   const auto scene = duct({"material.yield_stress=10", "time.end=12", "mpm.scheme=linear-flip", "mpm.cfl=0.3",
                            "mpm.flip_relaxation_time=1e6"});
-  const double error = l2(run_and_read(scene).profiles.back(), [](double y) { return exact_velocity(y, 10.0); });
+  const double error =
+      l2(run_and_read(scene).profiles.back(), [](double y) { return exact_velocity(y, 10.0); });
   std::printf("    yield 10 Pa: L2 %.3g\n", error);
   EXPECT_LE(error, 1e-3);
 }
@@ -125,8 +137,10 @@ TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
 TEST_F(Duct, NewtonianFlowConvergesAtLeastWithTheSquareOfTheCell) {
   // At 300 Pa s the flow is steady within a second.
   const auto error = [&](const std::string& cell) {
-    const auto scene = duct({"material.model=newtonian", "material.plastic_viscosity=300", "time.end=3", "mpm.cell=" + cell});
-    return l2(run_and_read(scene, cell).profiles.back(), [](double y) { return exact_velocity(y, 0.0, 300.0); });
+    const auto scene = duct(
+        {"material.model=newtonian", "material.plastic_viscosity=300", "time.end=3", "mpm.cell=" + cell});
+    return l2(run_and_read(scene, cell).profiles.back(),
+              [](double y) { return exact_velocity(y, 0.0, 300.0); });
   };
   const double coarse = error("0.05"), fine = error("0.025"), finest = error("0.0125");
   std::printf("    L2 %.3g, %.3g, %.3g at 50, 25, 12.5 mm: order %.2f, %.2f\n", coarse, fine, finest,
@@ -164,7 +178,8 @@ TEST_F(Duct, BelowYieldARegularisedFluidCreepsAsFastAsItsLawSays) {
     const auto scene = duct({"material.model=papanastasiou", setting("material.regularisation_time", m),
                              "forces.body_force=[[0.0, 360.0]]", "time.end=2"});
     const auto run = run_and_read(scene, std::to_string(m));
-    const double expected = papanastasiou_creep(360.0, 100.0, m), creep = run.history.at("plug_velocity_m_s").back();
+    const double expected = papanastasiou_creep(360.0, 100.0, m),
+                 creep = run.history.at("plug_velocity_m_s").back();
     std::printf("    m = %g s: creeps at %.4g m/s, its law says %.4g\n", m, creep, expected);
     EXPECT_NEAR(creep, expected, 0.05 * expected) << "m = " << m;
   }
@@ -173,9 +188,11 @@ TEST_F(Duct, BelowYieldARegularisedFluidCreepsAsFastAsItsLawSays) {
 }
 
 TEST_F(Duct, FlocculationAtRestGrowsExactlyWithTime) {
-  const auto scene = duct({"forces.body_force=[[0.0, 100.0]]", "time.end=1", "mpm.cell=0.05", "thixotropy.flocculation_rate=0.39",
-                           "thixotropy.deflocculation_coefficient=0.15", "thixotropy.initial_flocculation=1.8"});
+  const auto scene = duct({"forces.body_force=[[0.0, 100.0]]", "time.end=1", "mpm.cell=0.05",
+                           "thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                           "thixotropy.initial_flocculation=1.8"});
   const auto run = run_and_read(scene);
   for (std::size_t i = 0; i < run.history.rows(); ++i)
-    ASSERT_NEAR(run.history.at("flocculation_mean")[i], 1.8 + 0.39 / 100.0 * run.history.at("time_s")[i], 1e-12);
+    ASSERT_NEAR(run.history.at("flocculation_mean")[i], 1.8 + 0.39 / 100.0 * run.history.at("time_s")[i],
+                1e-12);
 }

@@ -1,5 +1,5 @@
-// Bodies under gravity against what is known of them. Every bound is stated beside what was measured, on AVX-512 in double
-// precision.
+// Bodies under gravity against what is known of them. Every bound is stated beside what was measured, on
+// AVX-512 in double precision.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -24,9 +24,9 @@ TEST(Column, AtRestItsAveragedPressureIsTheWeightAbove) {
     s.bounds[1].lower = PlaneWall::slip;
     auto solver = make_solver(s, block(s, {0, 0, 0}, {across, high, 0}, 3));
     for (int i = 0; i < 4000; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
-    // Row by row of cells against the weight above the row and half its own, per width. Quadratic functions carry the
-    // particles' pressure; of linear ones a cell carries the sum of volume times pressure, over its own volume, which
-    // differ where a lattice row more or less than three happens to lie in the cell.
+    // Row by row of cells against the weight above the row and half its own, per width. Quadratic functions
+    // carry the particles' pressure; of linear ones a cell carries the sum of volume times pressure, over its
+    // own volume, which differ where a lattice row more or less than three happens to lie in the cell.
     struct Row {
       double mass = 0.0, volume = 0.0, thrust = 0.0;
     };
@@ -44,11 +44,13 @@ TEST(Column, AtRestItsAveragedPressureIsTheWeightAbove) {
     for (auto found = rows.rbegin(); found != rows.rend(); ++found) {
       const Row& row = found->second;
       const double weight = (above + 0.5 * row.mass) * 9.81 / (across * s.cell);
-      const double carried = row.thrust / (transfer == Transfer::quadratic_apic ? row.volume : across * s.cell * s.cell);
+      const double carried =
+          row.thrust / (transfer == Transfer::quadratic_apic ? row.volume : across * s.cell * s.cell);
       worst = std::max(worst, std::abs(carried - weight));
       above += row.mass;
     }
-    EXPECT_NEAR(above, s.density * across * high * s.cell * s.cell, 0.01 * above) << "kg, seeded slightly unevenly";
+    EXPECT_NEAR(above, s.density * across * high * s.cell * s.cell, 0.01 * above)
+        << "kg, seeded slightly unevenly";
     std::printf("    worst row off by %.2g of the pressure at the bottom\n", worst / bottom);
     EXPECT_LT(worst, 0.02 * bottom);
   }
@@ -58,8 +60,8 @@ namespace {
 
 /// The Roussel slump on cells of 20 mm, to rest.
 scenes::Scene coarse_slump(const std::vector<std::string>& more = {}) {
-  return scenes::load_scene("roussel-slump",
-                            {with({"mpm.cell=0.02", "mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
+  return scenes::load_scene(
+      "roussel-slump", {with({"mpm.cell=0.02", "mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
 }
 
 }  // namespace
@@ -75,8 +77,8 @@ TEST_F(Slump, ComesToRestWhereItDidWhenThisWasWritten) {
   const double spread = run.history.at("spread_mm").back(), height = run.history.at("height_mm").back();
   const double rest = run.info["rest_time_s"].get<double>();
   std::printf("    spread %.2f mm, height %.2f mm, rest at %.2f s\n", spread, height, rest);
-  // flowrest mpm roussel-slump --set mpm.cell=0.02, quadratic-apic, double, avx512. No truth: 20 mm is two cells over the
-  // depth. It says that something has changed.
+  // flowrest mpm roussel-slump --set mpm.cell=0.02, quadratic-apic, double, avx512. No truth: 20 mm is two
+  // cells over the depth. It says that something has changed.
   EXPECT_NEAR(spread, stored_spread_mm, 0.005 * stored_spread_mm);
   EXPECT_NEAR(height, stored_height_mm, 0.02 * stored_height_mm);
   EXPECT_NEAR(rest, stored_rest_s, 0.1 * stored_rest_s);
@@ -87,8 +89,8 @@ TEST_F(Slump, TheDiscretisationMakesNoEnergy) {
   const double scale = run.history.at("potential_energy_J").front();
   double least = 0.0;
   for (const double e : run.history.at("numerical_energy_J")) least = std::min(least, e);
-  std::printf("    numerical energy: least %.2g, last %.3g of the initial potential energy %.3g J\n", least / scale,
-              run.history.at("numerical_energy_J").back() / scale, scale);
+  std::printf("    numerical energy: least %.2g, last %.3g of the initial potential energy %.3g J\n",
+              least / scale, run.history.at("numerical_energy_J").back() / scale, scale);
   EXPECT_GE(least, -1e-3 * scale) << "J, of " << scale << " J";
   EXPECT_LT(run.history.at("numerical_energy_J").back(), 0.3 * scale);
 }
@@ -98,7 +100,8 @@ TEST_F(Slump, MassIsExactAndTheVolumeIsWhatTheEquationOfStateMakesOfIt) {
   const auto run = run_and_read(scene);
   const double at_rest = run.history.at("volume_at_rest_m3").front();
   for (const double v : run.history.at("volume_at_rest_m3")) ASSERT_NEAR(v, at_rest, 1e-13 * at_rest);
-  // At 10 s it hardly moves: the pressure of a column of depth h is rho g h / 2 in the mean, and K takes it up.
+  // At 10 s it hardly moves: the pressure of a column of depth h is rho g h / 2 in the mean, and K takes it
+  // up.
   const auto& profile = run.profiles.back();
   double thrust = 0.0;
   for (std::size_t i = 0; i < profile.value.size(); ++i) {
@@ -107,6 +110,7 @@ TEST_F(Slump, MassIsExactAndTheVolumeIsWhatTheEquationOfStateMakesOfIt) {
   }
   const double expected = at_rest - thrust / scene.material.bulk_modulus();
   const double volume = run.history.at("volume_m3").back();
-  std::printf("    volume %.6g of that at rest, the equation of state says %.6g\n", volume / at_rest, expected / at_rest);
+  std::printf("    volume %.6g of that at rest, the equation of state says %.6g\n", volume / at_rest,
+              expected / at_rest);
   EXPECT_NEAR(volume, expected, 1e-3 * at_rest);
 }
