@@ -1,5 +1,7 @@
 // Plane Poiseuille flow (Yu et al. 2026, section 3.3) against what is known exactly. Every bound is stated
 // beside what was measured, on AVX-512 in double precision.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "mpm/output/checkpoint.h"
@@ -124,14 +126,18 @@ TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
 }
 
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
-  // Measured 4.6e-4. At 200 Pa the lattice breaks up within seconds and the same run is at 1.7e-2, as
-  // jittered particles are.
-  const auto scene = duct({"material.yield_stress=10", "time.end=12", "mpm.scheme=linear-flip", "mpm.cfl=0.3",
-                           "mpm.flip_relaxation_time=1e6"});
-  const double error =
-      l2(run_and_read(scene).profiles.back(), [](double y) { return exact_velocity(y, 10.0); });
-  std::printf("    yield 10 Pa: L2 %.3g\n", error);
-  EXPECT_LE(error, 1e-3);
+  // Measured 4.6e-4 at 10 Pa and 7.0e-4 at 200 Pa. How large a step the lattice bears before it breaks up
+  // (1e-2 and more) depends on the plug: at 50, 100 and 200 Pa it holds at CFL 0.1 and not at 0.3, at 10 Pa
+  // at 0.3 and not at 0.1 (3.4e-3).
+  for (const auto& [yield, cfl] : {std::pair{10.0, "0.3"}, std::pair{200.0, "0.1"}}) {
+    const auto scene = duct({fmt::format("material.yield_stress={}", yield), "time.end=12",
+                             "mpm.scheme=linear-flip", fmt::format("mpm.cfl={}", cfl),
+                             "mpm.flip_relaxation_time=1e6", "mpm.particles_per_cell=[1,4]"});
+    const double error =
+        l2(run_and_read(scene).profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
+    EXPECT_LE(error, 1e-3) << yield << " Pa";
+  }
 }
 
 TEST_F(Duct, NewtonianFlowConvergesAtLeastWithTheSquareOfTheCell) {
