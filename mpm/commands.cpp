@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <memory>
 
 #include "mpm/output/run.h"
 #include "mpm/solver/kernels.h"
+#include "runs/process.h"
 #include "scenes/scene.h"
 
 namespace flowrest::mpm {
 
 namespace {
-
-std::atomic<bool> asked_to_stop = false;
 
 struct MpmOptions {
   std::string scene, model, output, resume, instruction_set;
@@ -26,10 +23,8 @@ RunResult run_or_resume(const MpmOptions& options) {
   RunOptions run_options;
   run_options.quiet = options.quiet;
   run_options.instruction_set = options.instruction_set;
-  asked_to_stop = false;
-  std::signal(SIGINT, [](int) { asked_to_stop = true; });
-  std::signal(SIGTERM, [](int) { asked_to_stop = true; });
-  run_options.interrupted = [] { return asked_to_stop.load(); };
+  const runs::InterruptGuard guard;
+  run_options.interrupted = [] { return runs::InterruptGuard::count() > 0; };
   if (!options.resume.empty()) {
     run_options.directory = options.resume;
     return resume(run_options);
