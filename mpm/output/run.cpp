@@ -1,7 +1,6 @@
 #include "mpm/output/run.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <chrono>
