@@ -84,6 +84,18 @@ TEST_F(Slump, ComesToRestWhereItDidWhenThisWasWritten) {
   EXPECT_NEAR(rest, stored_rest_s, 0.1 * stored_rest_s);
 }
 
+TEST_F(Slump, InFloatStopsWhereAndWhenItDoesInDouble) {
+  // Measured: 555.525 and 555.530 mm, at rest at 24.35 s in both; at 10 mm 563.084 and 563.095 mm, at 30.0
+  // and 29.85 s.
+  const auto in_double = run_and_read(coarse_slump());
+  const auto in_float = run_and_read(coarse_slump({"mpm.precision=float"}));
+  EXPECT_EQ(in_float.info["precision"], "float");
+  const double spread = in_double.history.at("spread_mm").back();
+  EXPECT_NEAR(in_float.history.at("spread_mm").back(), spread, 0.002 * spread);
+  const double rest = in_double.info["rest_time_s"].get<double>();
+  EXPECT_NEAR(in_float.info["rest_time_s"].get<double>(), rest, 0.05 * rest);
+}
+
 TEST_F(Slump, TheDiscretisationMakesNoEnergy) {
   const auto run = run_and_read(coarse_slump({"time.end=3", "time.stop_at_rest=false", "mpm.cell=0.01"}));
   const double scale = run.history.at("potential_energy_J").front();
