@@ -16,7 +16,8 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
     int c[3];
     cell_coordinates<T, Dim>(node, c);
     Record<T> sum[records];
-    for (auto& r : sum) r = Record<T>{};
+    // By index: a deduced reference would lose the records' alignment, which is that of one number.
+    for (int r = 0; r < records; ++r) sum[r] = Record<T>{};
     for (int delta = 0; delta < (1 << Dim); ++delta) {
       const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
       const std::uint32_t slot = view.minus[delta];
