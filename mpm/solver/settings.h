@@ -18,7 +18,8 @@ inline int vertical_axis(const scenes::Scene& scene) { return scene.spatial_dime
 /// Uniform acceleration at a time, m/s2 per axis.
 std::array<double, 3> acceleration_at(const scenes::Scene&, double time);
 
-/// The cell size in use: a duct's is adjusted so that its walls lie on cell faces. m
+/// The cell size in use. A duct is a whole number of cells high but for round-off, which is taken out here so
+/// that its upper wall lies on a cell face exactly. m
 double cell_size(const scenes::Scene&);
 
 }  // namespace flowrest::mpm

@@ -62,7 +62,7 @@ struct Tile {
   }
 };
 
-/// Weights, slopes and (APIC) weighted offsets of a tile's particles, per axis and node.
+/// Weights and slopes of a tile's particles, per axis and node.
 template <class T, int Dim, class Shape>
 struct Weights {
   T* weight[Dim][Shape::nodes];
