@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "foamCases/viscosity.h"
+#include "foamCases/concrete_laws.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
 
@@ -21,6 +21,9 @@ using scenes::Scene;
 using scenes::SceneError;
 
 namespace {
+
+/// The name by which a case loads the plug-in.
+constexpr const char* plug_in_link = "libflowrestRheology.so";
 
 /// What a user may keep in a case folder beside its sources, and a copy must not take along.
 bool belongs_to_case(const fs::path& name) {
@@ -35,13 +38,11 @@ bool belongs_to_case(const fs::path& name) {
 
 void check_model(const Scene& scene) {
   const auto& material = scene.material;
-  const char* allowed = "allowed: papanastasiou, bi-viscous, newtonian";
   switch (material.model) {
     case Model::elasto_viscoplastic:
       refuse(scene,
-             fmt::format("model elasto-viscoplastic: interFoam's built-in fluids never come to rest, so it "
-                         "needs a rheology plug-in that there is not yet; {}",
-                         allowed));
+             "model elasto-viscoplastic: the OpenFOAM side has no such law yet; allowed: papanastasiou, "
+             "bi-viscous, newtonian");
     case Model::papanastasiou:
       if (!material.regularisation_time)
         refuse(scene, "model papanastasiou needs material.regularisation_time, in s and above 0");
@@ -53,51 +54,6 @@ void check_model(const Scene& scene) {
     case Model::newtonian:
       break;
   }
-  if (scene.thixotropy)
-    refuse(
-        scene,
-        "[thixotropy]: interFoam's built-in fluids have no memory, so it needs a rheology plug-in that there "
-        "is not yet; allowed: a scene without [thixotropy]");
-}
-
-std::string concrete_viscosity(const scenes::Material& material) {
-  const double k = material.plastic_viscosity / material.density;
-  switch (material.model) {
-    case Model::papanastasiou:
-      return fmt::format(
-          "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / rho with eta = {} Pa s, tau0 = {} Pa, "
-          "m = {} s,\n"
-          "// given as a table of (rate in 1/s, viscosity in m2/s) that linear interpolation keeps to 0.1 "
-          "%.\n"
-          "concreteViscosity\n{{\n    transportModel  strainRateFunction;\n    strainRateFunctionCoeffs\n    "
-          "{{\n"
-          "        function    table $strainRateTable;\n    }}\n}}\n",
-          material.plastic_viscosity, material.yield_stress, material.regularisation_time.value());
-    case Model::bi_viscous:
-      return fmt::format(
-          "// Bi-viscous: min(nu0, (tau0 / rate + eta) / rho) with eta = {} Pa s, tau0 = {} Pa; the branches "
-          "meet at\n"
-          "// {} 1/s. HerschelBulkley takes its stresses over the density.\n"
-          "concreteViscosity\n{{\n    transportModel  HerschelBulkley;\n    HerschelBulkleyCoeffs\n    {{\n"
-          "        nu0     {};\n        tau0    {};\n        k       {};\n        n       1;\n    }}\n}}\n",
-          material.plastic_viscosity, material.yield_stress, material.critical_shear_rate.value(),
-          bi_viscous_viscosity_at_rest(material), material.yield_stress / material.density, k);
-    case Model::newtonian:
-      return fmt::format(
-          "// Newtonian: eta / rho with eta = {} Pa s.\n"
-          "concreteViscosity\n{{\n    transportModel  Newtonian;\n    nu              {};\n}}\n",
-          material.plastic_viscosity, k);
-    case Model::elasto_viscoplastic:
-      break;
-  }
-  throw std::logic_error("a model the case does not run");
-}
-
-std::string strain_rate_table(const scenes::Material& material) {
-  std::string text = "\nstrainRateTable\n(\n";
-  for (const auto& point : papanastasiou_table(material))
-    text += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
-  return text + ");\n";
 }
 
 std::string mesh_parameters(const Scene& scene) {
@@ -187,7 +143,7 @@ double sample_interval(const Scene& scene) {
   return std::min(scene.output.history_interval, scene.output.profile_interval);
 }
 
-std::string scene_parameters(const Scene& scene) {
+std::string scene_parameters(const Scene& scene, bool plug_in) {
   return fmt::format(
              "// The scene '{}' in numbers: the only file of this case that `flowrest foam` writes. Every "
              "dictionary\n"
@@ -195,12 +151,10 @@ std::string scene_parameters(const Scene& scene) {
              "density.\n\n",
              scene.name) +
          mesh_parameters(scene) + time_parameters(scene) + phase_parameters(scene) +
-         (scene.material.model == Model::papanastasiou
-              ? strain_rate_table(scene.material).substr(1) + "\n" + concrete_viscosity(scene.material)
-              : concrete_viscosity(scene.material));
+         concrete_laws(scene, plug_in);
 }
 
-void fill_case(const Scene& scene, const fs::path& directory) {
+void fill_case(const Scene& scene, const fs::path& directory, const std::optional<fs::path>& plug_in) {
   const fs::path source = cases_folder() / scenes::to_string(scene.kind);
   std::error_code error;
   if (!fs::is_directory(source / "system", error))
@@ -216,10 +170,12 @@ void fill_case(const Scene& scene, const fs::path& directory) {
                  fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     fs::remove_all(directory / "constant" / "polyMesh");
     fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
+    fs::remove(directory / plug_in_link);
+    if (plug_in) fs::create_symlink(*plug_in, directory / plug_in_link);
   } catch (const fs::filesystem_error& fault) {
     throw runs::RunError(fmt::format("{}: the case cannot be copied: {}", directory.string(), fault.what()));
   }
-  write_text(directory / "sceneParameters", scene_parameters(scene));
+  write_text(directory / "sceneParameters", scene_parameters(scene, plug_in.has_value()));
   write_text(directory / "case.foam", "");
 }
 

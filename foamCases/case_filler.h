@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "scenes/scene.h"
@@ -23,11 +24,13 @@ double largest_time_step(const scenes::Scene&);
 /// Simulated seconds between the samples interFoam writes for the gauges.
 double sample_interval(const scenes::Scene&);
 
-/// The text of sceneParameters.
-std::string scene_parameters(const scenes::Scene&);
+/// The text of sceneParameters, with the laws of the plug-in or OpenFOAM's own.
+std::string scene_parameters(const scenes::Scene&, bool plug_in);
 
-/// Copies the scene's case into `directory`, with its sceneParameters and its initial fields in 0/.
+/// Copies the scene's case into `directory`, with its sceneParameters and its initial fields in 0/, and a
+/// link to the plug-in (its path) where it takes that.
 /// @throws runs::RunError where the case cannot be found or copied.
-void fill_case(const scenes::Scene&, const std::filesystem::path& directory);
+void fill_case(const scenes::Scene&, const std::filesystem::path& directory,
+               const std::optional<std::filesystem::path>& plug_in);
 
 }  // namespace flowrest::foam

@@ -46,7 +46,7 @@ std::string refusal(const std::string& model, const std::vector<std::string>& se
 
 TEST(CaseFiller, TheCommittedCaseIsTheRousselSlump) {
   EXPECT_EQ(text_of(cases_folder() / "slump" / "sceneParameters"),
-            scene_parameters(roussel_slump("papanastasiou")))
+            scene_parameters(roussel_slump("papanastasiou"), false))
       << "foamCases/slump/sceneParameters is what `flowrest foam roussel-slump --model papanastasiou` writes";
 }
 
@@ -56,7 +56,7 @@ TEST(CaseFiller, TakesEveryNumberFromTheScene) {
                      "material.plastic_viscosity=20", "material.critical_shear_rate=0.05", "walls.base=slip",
                      "forces.gravity=1.6", "foam.max_courant=0.1", "geometry.cone_radius_bottom=0.12",
                      "output.history_interval=0.5", "output.snapshot_interval=2"});
-  const auto values = entries(scene_parameters(scene));
+  const auto values = entries(scene_parameters(scene, false));
   const auto number = [&](const std::string& key) { return std::stod(values.at(key)); };
   EXPECT_EQ(values.at("baseWall"), "slip");
   EXPECT_EQ(values.at("gravity"), "(0 0 -1.6)");
@@ -77,7 +77,7 @@ TEST(CaseFiller, TakesEveryNumberFromTheScene) {
 }
 
 TEST(CaseFiller, ANewtonianFluidHasOneViscosity) {
-  const auto values = entries(scene_parameters(roussel_slump("newtonian")));
+  const auto values = entries(scene_parameters(roussel_slump("newtonian"), false));
   EXPECT_EQ(values.at("transportModel"), "Newtonian");
   EXPECT_DOUBLE_EQ(std::stod(values.at("nu")), 50.0 / 2300.0);
 }
@@ -88,14 +88,8 @@ TEST(CaseFiller, TheStepNeverPassesASampleAndObeysTheScene) {
   EXPECT_EQ(largest_time_step(roussel_slump("papanastasiou", {"material.plastic_viscosity=0.1"})), 0.05);
 }
 
-TEST(CaseFiller, RefusesWhatTheBuiltInFluidsCannotDo) {
-  EXPECT_THAT(refusal("elasto-viscoplastic", {}),
-              HasSubstr("never come to rest, so it needs a rheology plug-in that there is not yet; allowed: "
-                        "papanastasiou, bi-viscous, newtonian"));
-  EXPECT_THAT(refusal("papanastasiou",
-                      {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
-                       "thixotropy.initial_flocculation=1.8"}),
-              HasSubstr("allowed: a scene without [thixotropy]"));
+TEST(CaseFiller, RefusesWhatTheCaseCannotRun) {
+  EXPECT_THAT(refusal("elasto-viscoplastic", {}), HasSubstr("allowed: papanastasiou, bi-viscous, newtonian"));
   EXPECT_THAT(refusal("papanastasiou", {"geometry.dimension=quarter"}), HasSubstr("allowed: axisymmetric"));
   EXPECT_THAT(refusal("papanastasiou", {"geometry.domain_height=0.301"}), HasSubstr("at least 0.31 m"));
   EXPECT_THAT(refusal("papanastasiou", {"foam.cell=0.0001"}), HasSubstr("at most 5e+06 are allowed"));
@@ -108,6 +102,27 @@ TEST(CaseFiller, RefusesWhatTheBuiltInFluidsCannotDo) {
   }
 }
 
+TEST(CaseFiller, TellsThePlugInEverythingOfTheLaw) {
+  const auto text = scene_parameters(
+      roussel_slump("papanastasiou",
+                    {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+                     "thixotropy.initial_flocculation=1.8", "foam.mixing=saturating", "foam.full_at=0.3",
+                     "foam.strain_rate=concrete", "material.yield_stress=80"}),
+      true);
+  for (const char* entry :
+       {"transportModel      PapanastasiouBingham;", "yieldStress         80;", "plasticViscosity    50;",
+        "regularisationTime    100;", "flocculationRate            0.39;",
+        "deflocculationCoefficient   0.15;", "initialFlocculation         1.8;",
+        "mixing              saturating;", "fullAt              0.3;", "strainRate          concrete;",
+        "historyObjects      (alpha.concrete U flocculation);",
+        "rheologyLibraries   (\"$FOAM_CASE/libflowrestRheology.so\");"})
+    EXPECT_THAT(text, HasSubstr(entry));
+  EXPECT_THAT(scene_parameters(roussel_slump("bi-viscous", {"foam.mixing=mass-weighted"}), true),
+              ::testing::AllOf(HasSubstr("transportModel      biViscousBingham;"),
+                               HasSubstr("criticalShearRate     0.01;"), HasSubstr("massWeighted;"),
+                               ::testing::Not(HasSubstr("thixotropy"))));
+}
+
 TEST(CaseFiller, CopiesTheCaseAndNothingARunLeftInIt) {
   const TemporaryFolder cases, target;
   fs::copy(cases_folder() / "slump", cases.path() / "slump", fs::copy_options::recursive);
@@ -115,10 +130,11 @@ TEST(CaseFiller, CopiesTheCaseAndNothingARunLeftInIt) {
   fs::create_directories(cases.path() / "slump" / "constant" / "polyMesh");
   setenv("FLOWREST_FOAM_CASES", cases.path().c_str(), 1);
   const auto scene = roussel_slump("bi-viscous");
-  fill_case(scene, target.path() / "case");
+  fill_case(scene, target.path() / "case", "/where/the/plug-in/is.so");
   unsetenv("FLOWREST_FOAM_CASES");
   const fs::path filled = target.path() / "case";
-  EXPECT_EQ(text_of(filled / "sceneParameters"), scene_parameters(scene));
+  EXPECT_EQ(text_of(filled / "sceneParameters"), scene_parameters(scene, true));
+  EXPECT_EQ(fs::read_symlink(filled / "libflowrestRheology.so"), "/where/the/plug-in/is.so");
   for (const char* part : {"0/U", "0/p_rgh", "0/alpha.concrete", "system/controlDict", "Allrun", "case.foam"})
     EXPECT_TRUE(fs::exists(filled / part)) << part;
   EXPECT_FALSE(fs::exists(filled / "12.5"));
@@ -129,7 +145,7 @@ TEST(CaseFiller, SaysWhereItLookedForACase) {
   const TemporaryFolder empty;
   setenv("FLOWREST_FOAM_CASES", empty.path().c_str(), 1);
   try {
-    fill_case(roussel_slump("papanastasiou"), empty.path() / "case");
+    fill_case(roussel_slump("papanastasiou"), empty.path() / "case", std::nullopt);
     FAIL() << "a case was found where there is none";
   } catch (const runs::RunError& error) {
     EXPECT_THAT(error.what(), HasSubstr((empty.path() / "slump").string() + ": no OpenFOAM case is there"));

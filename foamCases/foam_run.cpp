@@ -11,6 +11,7 @@
 
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
+#include "foamCases/plug_in.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
 #include "foamCases/wedge_grid.h"
@@ -63,13 +64,14 @@ class SlumpRun {
         programs_(std::move(programs)),
         writer_(options.directory, scene, "foam"),
         case_(options.directory / "case"),
+        plug_in_(plug_in_for(scene)),
         progress_(fmt::format("foam {}", scenes::to_string(scene.material.model)), scene.time.end,
                   options.quiet) {}
 
   RunOutcome run() {
     const runs::InterruptGuard guard;
     try {
-      fill_case(scene_, case_);
+      fill_case(scene_, case_, plug_in_);
       writer_.info()["cells"] = wedge_grid(scene_).cells();
       if (prepare()) solve();
     } catch (const std::exception& fault) {
@@ -231,6 +233,7 @@ class SlumpRun {
     for (const auto& [program, seconds] : cpu_by_program_)
       if (program != "flowrest") cpu += seconds;
     info["openfoam"] = log_.build();
+    info["laws"] = plug_in_ ? "plug-in" : "built-in";
     info["time_reached_s"] = now.time;
     info["steps"] = steps_;
     info["wall_s"] = wall;
@@ -257,6 +260,7 @@ class SlumpRun {
   Programs programs_;
   runs::RunWriter writer_;
   fs::path case_;
+  std::optional<fs::path> plug_in_;
   runs::Progress progress_;
   std::optional<SlumpSampler> sampler_;
   SolverLog log_;
@@ -276,6 +280,7 @@ class SlumpRun {
 
 RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
   check_supported(scene);
+  plug_in_for(scene);  // it says what is missing before anything is written
   const auto outcome = SlumpRun(scene, options, needed_programs()).run();
   if (outcome.status == Status::failed)
     throw runs::NumericsError(

@@ -10,6 +10,7 @@
 
 #include "foamCases/case_filler.h"
 #include "foamCases/foam_run.h"
+#include "foamCases/plug_in.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/test_scene.h"
 #include "runs/depth.h"
@@ -116,6 +117,98 @@ TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {
   EXPECT_GE(result.history.rows(), 2U);
   const auto last = time_directories(result.directory / "case").back();
   EXPECT_TRUE(fs::exists(last.second / "p_rgh")) << last.second;
+}
+
+class PlugIn : public OpenFoam {
+ protected:
+  void SetUp() override {
+    OpenFoam::SetUp();
+    if (!IsSkipped() && !find_plug_in())
+      GTEST_SKIP()
+          << "the rheology plug-in was not built: OpenFOAM's headers are missing (scripts/setup fetches "
+             "them)";
+  }
+};
+
+/// Two implementations of each law: OpenFOAM's, given a table or a capped viscosity, and the plug-in's.
+TEST_F(PlugIn, AgreesWithOpenFoamsOwnLaws) {
+  for (const char* model : {"papanastasiou", "bi-viscous"}) {
+    const auto spread = [&](const char* laws) {
+      const auto result =
+          run(roussel_slump(model, {"foam.cell=0.02", "time.end=0.3", "foam.max_time_step=0.002",
+                                    "foam.max_courant=10", std::string("foam.laws=") + laws}));
+      EXPECT_EQ(result.info["laws"], laws);
+      return result.history.at("spread_mm").back();
+    };
+    EXPECT_NEAR(spread("plug-in"), spread("built-in"), 0.1) << model;
+  }
+}
+
+TEST_F(PlugIn, AWordItDoesNotKnowIsTheReason) {
+  const auto scene = roussel_slump("papanastasiou", {"foam.cell=0.03", "time.end=0.1"});
+  fill_case(scene, folder_.path() / "case", find_plug_in());
+  std::string text = testing::text_of(folder_.path() / "case" / "sceneParameters");
+  text.replace(text.find("arithmetic"), 10, "arithmatic");
+  std::ofstream(folder_.path() / "case" / "sceneParameters") << text;
+  runs::Process allrun(folder_.path() / "case" / "Allrun", {}, folder_.path(), folder_.path() / "log", {});
+  ASSERT_TRUE(allrun.wait(120.0));
+  EXPECT_FALSE(allrun.poll()->good());
+  EXPECT_THAT(testing::text_of(folder_.path() / "case" / "log.interFoam"),
+              ::testing::AllOf(::testing::HasSubstr("arithmatic"), ::testing::HasSubstr("massWeighted")));
+}
+
+TEST_F(PlugIn, ACopiedCaseWithoutTheLibrarySaysSo) {
+  fill_case(roussel_slump("papanastasiou"), folder_.path() / "case", find_plug_in());
+  fs::remove(folder_.path() / "case" / "libflowrestRheology.so");
+  runs::Process allrun(folder_.path() / "case" / "Allrun", {}, folder_.path(), folder_.path() / "log", {});
+  ASSERT_TRUE(allrun.wait(120.0));
+  EXPECT_EQ(allrun.poll()->exit_code, 4);
+  EXPECT_THAT(testing::text_of(folder_.path() / "log"),
+              ::testing::HasSubstr("takes its laws from flowrest's plug-in"));
+}
+
+/// Growth without breakdown is the same everywhere, so whatever the flow and the interface do, the mean over
+/// the concrete must follow A_thix / tau0 to round-off: air that thinned it, or a flux that is not the
+/// fraction's own, would show.
+TEST_F(PlugIn, FlocculationIsNeitherThinnedByAirNorLost) {
+  const auto result = run(roussel_slump(
+      "papanastasiou", {"foam.cell=0.02", "time.end=0.3", "thixotropy.flocculation_rate=5",
+                        "thixotropy.deflocculation_coefficient=0", "thixotropy.initial_flocculation=0.3"}));
+  const auto& time = result.history.at("time_s");
+  for (std::size_t i = 0; i < time.size(); ++i)
+    EXPECT_NEAR(result.history.at("flocculation_mean")[i], 0.3 + 5.0 / 50.0 * time[i], 1e-6) << time[i];
+}
+
+/// Where it only breaks down it must fall, and stay above 0.
+TEST_F(PlugIn, FlowBreaksFlocculationDown) {
+  const auto result = run(roussel_slump(
+      "bi-viscous", {"foam.cell=0.02", "time.end=0.3", "thixotropy.flocculation_rate=0",
+                     "thixotropy.deflocculation_coefficient=1", "thixotropy.initial_flocculation=0.3"}));
+  const auto& mean = result.history.at("flocculation_mean");
+  for (std::size_t i = 1; i < mean.size(); ++i) EXPECT_LT(mean[i], mean[i - 1]);
+  EXPECT_GT(mean.back(), 0.0);
+  EXPECT_LT(mean.back(), 0.1);
+}
+
+TEST(PlugInMissing, IsNamedWithTheWayToGetIt) {
+  setenv("FLOWREST_RHEOLOGY", "/there/is/none.so", 1);
+  EXPECT_FALSE(plug_in_for(roussel_slump("bi-viscous")));
+  const std::vector<std::string> thixotropy = {"thixotropy.flocculation_rate=0.39",
+                                               "thixotropy.deflocculation_coefficient=0.15",
+                                               "thixotropy.initial_flocculation=1.8"};
+  try {
+    plug_in_for(roussel_slump("bi-viscous", thixotropy));
+    ADD_FAILURE() << "thixotropy without the plug-in was accepted";
+  } catch (const runs::MissingProgram& error) {
+    EXPECT_THAT(error.what(),
+                ::testing::HasSubstr("model bi-viscous with [thixotropy] needs flowrest's rheology "
+                                     "plug-in"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("scripts/setup"));
+  }
+  unsetenv("FLOWREST_RHEOLOGY");
+  auto set = thixotropy;
+  set.push_back("foam.laws=built-in");
+  EXPECT_THROW(plug_in_for(roussel_slump("bi-viscous", set)), scenes::SceneError);
 }
 
 TEST_F(OpenFoam, TheCommittedCaseRunsAsItStands) {

@@ -28,9 +28,12 @@ std::vector<std::pair<double, fs::path>> time_directories(const fs::path& case_d
 
 SlumpSampler::SlumpSampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
     : scene_(scene), grid_(wedge_grid(scene)), case_directory_(std::move(case_directory)), writer_(writer) {
-  writer_.history_columns({"time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "front_mm", "height_mm",
-                           "volume_m3", "kinetic_energy_J", "shear_rate_p99_1_s", "initial_residual_U",
-                           "courant_max", "time_step_s", "trapped_air_m3"});
+  std::vector<std::string> columns{
+      "time_s",      "spread_mm",   "spread_1p5_mm",    "spread_6_mm",        "front_mm",
+      "height_mm",   "volume_m3",   "kinetic_energy_J", "shear_rate_p99_1_s", "initial_residual_U",
+      "courant_max", "time_step_s", "trapped_air_m3"};
+  if (scene_.thixotropy) columns.push_back("flocculation_mean");
+  writer_.history_columns(columns);
 }
 
 void SlumpSampler::note(const SolverStep& step) { steps_.push_back(step); }
@@ -62,6 +65,13 @@ void SlumpSampler::sample_before(double complete_before) {
 void SlumpSampler::sample(double time, const fs::path& directory) {
   const SlumpFields fields{read_internal_field(directory / "alpha.concrete", grid_.cells(), 1),
                            read_internal_field(directory / "U", grid_.cells(), 3)};
+  if (scene_.thixotropy) {
+    // At the start the solver has not yet written the field: it is what the scene says.
+    const auto flocculation =
+        time > 0.0 ? read_internal_field(directory / "flocculation", grid_.cells(), 1)
+                   : std::vector<double>(grid_.cells(), scene_.thixotropy->initial_flocculation);
+    state_.flocculation = mean_over_concrete(grid_, fields.fraction, flocculation);
+  }
   const auto gauges = gauge_slump(grid_, fields, scene_.material.density, scene_.base == scenes::Wall::slip);
   if (time == 0.0) state_.first_volume = gauges.volume;
   state_.time = time;
@@ -82,19 +92,20 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
     return 1e3 * runs::spread(gauges.radius, gauges.depth, threshold);
   };
   const SolverStep steps = since_last_row(time);
-  const double row[] = {time,
-                        spread_mm(0.003),
-                        spread_mm(0.0015),
-                        spread_mm(0.006),
-                        1e3 * gauges.front,
-                        1e3 * state_.height,
-                        gauges.volume,
-                        gauges.kinetic_energy,
-                        gauges.shear_rate_p99,
-                        steps.initial_residual_u,
-                        steps.courant,
-                        steps.time_step,
-                        gauges.trapped_air};
+  std::vector<double> row{time,
+                          spread_mm(0.003),
+                          spread_mm(0.0015),
+                          spread_mm(0.006),
+                          1e3 * gauges.front,
+                          1e3 * state_.height,
+                          gauges.volume,
+                          gauges.kinetic_energy,
+                          gauges.shear_rate_p99,
+                          steps.initial_residual_u,
+                          steps.courant,
+                          steps.time_step,
+                          gauges.trapped_air};
+  if (scene_.thixotropy) row.push_back(state_.flocculation);
   writer_.history(row);
 }
 

@@ -23,6 +23,7 @@ struct SlumpState {
   double rim_depth = 0.0;     ///< m
   double volume_error = 0.0;  ///< largest so far, relative to the first sample
   double first_volume = 0.0;  ///< m3
+  double flocculation = 0.0;  ///< mean over the concrete
 };
 
 /// Turns the time directories of a running slump case into rows of history.csv and profiles.csv, and removes

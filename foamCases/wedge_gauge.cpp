@@ -140,4 +140,16 @@ SlumpGauges gauge_slump(const WedgeGrid& grid, const SlumpFields& fields, double
   return gauges;
 }
 
+double mean_over_concrete(const WedgeGrid& grid, const std::vector<double>& fraction,
+                          const std::vector<double>& field) {
+  double volume = 0.0, sum = 0.0;
+  for (int row = 0; row < grid.rows(); ++row)
+    for (int ring = 0; ring < grid.rings; ++ring) {
+      const double concrete = fraction[grid.index(ring, row)] * grid.cell_volume(ring, row);
+      volume += concrete;
+      sum += concrete * field[grid.index(ring, row)];
+    }
+  return sum / volume;
+}
+
 }  // namespace flowrest::foam

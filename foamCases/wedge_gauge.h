@@ -28,6 +28,10 @@ struct SlumpGauges {
 /// `slip` says that the base does not hold the concrete back, which the shear rate in the lowest row needs.
 SlumpGauges gauge_slump(const WedgeGrid&, const SlumpFields&, double density, bool slip);
 
+/// Mean of a cell field over the concrete, by its volume.
+double mean_over_concrete(const WedgeGrid&, const std::vector<double>& fraction,
+                          const std::vector<double>& field);
+
 /// Shear rate sqrt(2 D:D) in every cell, with faces interpolated linearly as the case's schemes do. 1/s
 std::vector<double> shear_rate(const WedgeGrid&, const std::vector<double>& velocity, bool slip);
 

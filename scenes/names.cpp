@@ -54,6 +54,26 @@ const NameTable<Wall>& names_of(Wall) {
   return table;
 }
 
+const NameTable<FoamLaws>& names_of(FoamLaws) {
+  static const NameTable<FoamLaws> table = {
+      {FoamLaws::best, "best"}, {FoamLaws::plug_in, "plug-in"}, {FoamLaws::built_in, "built-in"}};
+  return table;
+}
+
+const NameTable<FoamMixing>& names_of(FoamMixing) {
+  static const NameTable<FoamMixing> table = {{FoamMixing::arithmetic, "arithmetic"},
+                                              {FoamMixing::harmonic, "harmonic"},
+                                              {FoamMixing::mass_weighted, "mass-weighted"},
+                                              {FoamMixing::saturating, "saturating"}};
+  return table;
+}
+
+const NameTable<FoamStrainRate>& names_of(FoamStrainRate) {
+  static const NameTable<FoamStrainRate> table = {{FoamStrainRate::mixture, "mixture"},
+                                                  {FoamStrainRate::concrete, "concrete"}};
+  return table;
+}
+
 namespace {
 
 template <class Choice>
@@ -74,6 +94,9 @@ std::string to_string(Precision choice) { return name_of(choice); }
 std::string to_string(Seeding choice) { return name_of(choice); }
 std::string to_string(FluidUpdate choice) { return name_of(choice); }
 std::string to_string(Wall choice) { return name_of(choice); }
+std::string to_string(FoamLaws choice) { return name_of(choice); }
+std::string to_string(FoamMixing choice) { return name_of(choice); }
+std::string to_string(FoamStrainRate choice) { return name_of(choice); }
 
 Model model_from_name(const std::string& name) {
   if (const auto model = choice_named<Model>(name)) return *model;

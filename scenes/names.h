@@ -20,6 +20,9 @@ const NameTable<Precision>& names_of(Precision);
 const NameTable<Seeding>& names_of(Seeding);
 const NameTable<FluidUpdate>& names_of(FluidUpdate);
 const NameTable<Wall>& names_of(Wall);
+const NameTable<FoamLaws>& names_of(FoamLaws);
+const NameTable<FoamMixing>& names_of(FoamMixing);
+const NameTable<FoamStrainRate>& names_of(FoamStrainRate);
 
 /// Every name of a choice.
 template <class Choice>

@@ -22,6 +22,13 @@ enum class Seeding { lattice, jittered };
 /// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
 enum class Wall { no_slip, slip };
+/// Whose laws an OpenFOAM run takes: flowrest's rheology plug-in, OpenFOAM's own, or the former where it is
+/// built.
+enum class FoamLaws { best, plug_in, built_in };
+/// How the stresses of concrete and air make that of a cell that holds both (plug-in only).
+enum class FoamMixing { arithmetic, harmonic, mass_weighted, saturating };
+/// Whose shear rate the law is given in such a cell (plug-in only).
+enum class FoamStrainRate { mixture, concrete };
 
 /// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Kind);
@@ -32,6 +39,9 @@ std::string to_string(Precision);
 std::string to_string(Seeding);
 std::string to_string(FluidUpdate);
 std::string to_string(Wall);
+std::string to_string(FoamLaws);
+std::string to_string(FoamMixing);
+std::string to_string(FoamStrainRate);
 
 /// A cone of material released on a plate; the axis of symmetry is vertical.
 struct SlumpGeometry {
@@ -132,6 +142,10 @@ struct Foam {
   double air_density = 1.0;               ///< kg/m3
   double air_kinematic_viscosity = 1e-2;  ///< m2/s, tames air jets at no cost in spread
   double wedge_angle = 5.0;               ///< degrees, the whole wedge
+  FoamLaws laws = FoamLaws::best;
+  FoamMixing mixing = FoamMixing::arithmetic;
+  double full_at = 0.5;  ///< of `saturating`: the fraction of concrete from which its stress counts in full
+  FoamStrainRate strain_rate = FoamStrainRate::mixture;
   bool operator==(const Foam&) const = default;
 };
 

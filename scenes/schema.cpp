@@ -200,6 +200,14 @@ std::vector<Key> foam_keys() {
              "kinematic viscosity of the air; large, to tame its jets"),
       number("foam.wedge_angle", "degrees", above(0.0, 10.0), AT(draft.scene.foam.wedge_angle),
              "angle of the whole wedge of an axisymmetric case"),
+      choice("foam.laws", AT(draft.scene.foam.laws),
+             "whose laws a run takes: those of the rheology plug-in, OpenFOAM's own, or the best there are"),
+      choice("foam.mixing", AT(draft.scene.foam.mixing),
+             "how the stresses of concrete and air mix in a cell (plug-in)"),
+      number("foam.full_at", "", from(1e-6, 1.0), AT(draft.scene.foam.full_at),
+             "fraction of concrete from which its stress counts in full, of the mixing `saturating`"),
+      choice("foam.strain_rate", AT(draft.scene.foam.strain_rate),
+             "whose shear rate the law takes in cells with air (plug-in)"),
   };
 }
 

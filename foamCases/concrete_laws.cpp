@@ -1,0 +1,110 @@
+#include "foamCases/concrete_laws.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "foamCases/viscosity.h"
+
+namespace flowrest::foam {
+
+using scenes::FoamMixing;
+using scenes::Model;
+using scenes::Scene;
+
+namespace {
+
+std::string strain_rate_table(const scenes::Material& material) {
+  std::string text = "strainRateTable\n(\n";
+  for (const auto& point : papanastasiou_table(material))
+    text += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
+  return text + ");\n\n";
+}
+
+/// OpenFOAM's own laws; they take stresses over the density.
+std::string built_in_viscosity(const scenes::Material& material) {
+  const double k = material.plastic_viscosity / material.density;
+  switch (material.model) {
+    case Model::papanastasiou:
+      return strain_rate_table(material) + fmt::format(
+                                               "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / "
+                                               "rho with eta = {} Pa s, tau0 = {} Pa, "
+                                               "m = {} s,\n"
+                                               "// given as a table of (rate in 1/s, viscosity in m2/s) that "
+                                               "linear interpolation keeps to 0.1 "
+                                               "%.\n"
+                                               "concreteViscosity\n{{\n    transportModel  "
+                                               "strainRateFunction;\n    strainRateFunctionCoeffs\n    "
+                                               "{{\n"
+                                               "        function    table $strainRateTable;\n    }}\n}}\n",
+                                               material.plastic_viscosity, material.yield_stress,
+                                               material.regularisation_time.value());
+    case Model::bi_viscous:
+      return fmt::format(
+          "// Bi-viscous: min(nu0, (tau0 / rate + eta) / rho) with eta = {} Pa s, tau0 = {} Pa; the branches "
+          "meet at\n"
+          "// {} 1/s. HerschelBulkley takes its stresses over the density.\n"
+          "concreteViscosity\n{{\n    transportModel  HerschelBulkley;\n    HerschelBulkleyCoeffs\n    {{\n"
+          "        nu0     {};\n        tau0    {};\n        k       {};\n        n       1;\n    }}\n}}\n",
+          material.plastic_viscosity, material.yield_stress, material.critical_shear_rate.value(),
+          bi_viscous_viscosity_at_rest(material), material.yield_stress / material.density, k);
+    case Model::newtonian:
+      return fmt::format(
+          "// Newtonian: eta / rho with eta = {} Pa s.\n"
+          "concreteViscosity\n{{\n    transportModel  Newtonian;\n    nu              {};\n}}\n",
+          material.plastic_viscosity, k);
+    case Model::elasto_viscoplastic:
+      break;
+  }
+  throw std::logic_error("a law that OpenFOAM does not have");
+}
+
+std::string mixing_name(FoamMixing mixing) {
+  return mixing == FoamMixing::mass_weighted ? "massWeighted" : scenes::to_string(mixing);
+}
+
+/// What every law of the plug-in is told.
+std::string common_coefficients(const Scene& scene, const std::string& indent) {
+  const auto& material = scene.material;
+  std::string text = fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s\n",
+                                 indent, material.yield_stress, material.plastic_viscosity);
+  if (scene.thixotropy)
+    text += fmt::format(
+        "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
+        "{0}    deflocculationCoefficient   {2};\n{0}    initialFlocculation         {3};\n{0}}}\n",
+        indent, scene.thixotropy->flocculation_rate, scene.thixotropy->deflocculation_coefficient,
+        scene.thixotropy->initial_flocculation);
+  text += fmt::format("{}mixing              {};\n", indent, mixing_name(scene.foam.mixing));
+  if (scene.foam.mixing == FoamMixing::saturating)
+    text += fmt::format("{}fullAt              {};\n", indent, scene.foam.full_at);
+  return text + fmt::format("{}strainRate          {};\n", indent, scenes::to_string(scene.foam.strain_rate));
+}
+
+std::string plug_in_viscosity(const Scene& scene) {
+  const auto& material = scene.material;
+  const bool papanastasiou = material.model == Model::papanastasiou;
+  return fmt::format(
+      "concreteViscosity\n{{\n    transportModel      {};\n{}    {}    {};  // {}\n}}\n",
+      papanastasiou ? "PapanastasiouBingham" : "biViscousBingham", common_coefficients(scene, "    "),
+      papanastasiou ? "regularisationTime" : "criticalShearRate ",
+      papanastasiou ? material.regularisation_time.value() : material.critical_shear_rate.value(),
+      papanastasiou ? "s" : "1/s");
+}
+
+}  // namespace
+
+std::string concrete_laws(const Scene& scene, bool plug_in) {
+  const bool thixotropic = plug_in && scene.thixotropy;
+  return fmt::format(
+             "// Libraries the solver loads beside its own; fields sampled for the history, and those of a "
+             "full "
+             "state.\n"
+             "rheologyLibraries   ({});\n"
+             "historyObjects      (alpha.concrete U{});\n"
+             "stateObjects        (alpha.concrete U p_rgh phi{});\n\n",
+             plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", thixotropic ? " flocculation" : "",
+             thixotropic ? " flocculation" : "") +
+         (plug_in ? plug_in_viscosity(scene) : built_in_viscosity(scene.material));
+}
+
+}  // namespace flowrest::foam

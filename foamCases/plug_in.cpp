@@ -1,0 +1,65 @@
+#include "foamCases/plug_in.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "runs/run_directory.h"
+
+namespace flowrest::foam {
+
+namespace fs = std::filesystem;
+using scenes::FoamLaws;
+using scenes::Model;
+using scenes::Scene;
+
+namespace {
+
+constexpr const char* library = "libflowrestRheology.so";
+
+std::string law(const Scene& scene) {
+  return fmt::format("model {}{}", scenes::to_string(scene.material.model),
+                     scene.thixotropy ? " with [thixotropy]" : "");
+}
+
+}  // namespace
+
+std::optional<fs::path> find_plug_in() {
+  fs::path path;
+  if (const char* given = std::getenv("FLOWREST_RHEOLOGY"); given != nullptr && *given != '\0') {
+    path = given;
+  } else {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    path = program.parent_path().parent_path() / "lib" / library;
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  return fs::absolute(path);
+}
+
+bool needs_plug_in(const Scene& scene) {
+  return scene.material.model == Model::elasto_viscoplastic ||
+         (scene.thixotropy && scene.material.model != Model::newtonian);
+}
+
+std::optional<fs::path> plug_in_for(const Scene& scene) {
+  const bool needed = needs_plug_in(scene) || scene.foam.laws == FoamLaws::plug_in;
+  if (scene.foam.laws == FoamLaws::built_in) {
+    if (!needs_plug_in(scene)) return std::nullopt;
+    throw scenes::SceneError(fmt::format(
+        "{}: {}: OpenFOAM has no such law of its own, but foam.laws is built-in; allowed: plug-in or best",
+        scene.path.string(), law(scene)));
+  }
+  if (scene.material.model == Model::newtonian) return std::nullopt;
+  const auto found = find_plug_in();
+  if (!found && needed)
+    throw runs::MissingProgram(fmt::format(
+        "{} is not there: {} needs flowrest's rheology plug-in for OpenFOAM. `scripts/setup` fetches the "
+        "headers it "
+        "is compiled against; then configure and build again (or FLOWREST_RHEOLOGY names the library)",
+        library, law(scene)));
+  return found;
+}
+
+}  // namespace flowrest::foam

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "scenes/scene.h"
+
+/// The rheology plug-in: flowrest's own laws for OpenFOAM, a library built beside the programs.
+namespace flowrest::foam {
+
+/// The library: FLOWREST_RHEOLOGY where set, else lib/ beside the folder of the running program; nothing
+/// where it was not built.
+std::optional<std::filesystem::path> find_plug_in();
+
+/// The library a scene's run loads, or nothing where it takes OpenFOAM's own laws: as foam.laws and the model
+/// say.
+/// @throws runs::MissingProgram where the run needs the plug-in and there is none, scenes::SceneError where
+/// it is told to do without.
+std::optional<std::filesystem::path> plug_in_for(const scenes::Scene&);
+
+/// Whether a scene's law is one that only the plug-in has.
+bool needs_plug_in(const scenes::Scene&);
+
+}  // namespace flowrest::foam

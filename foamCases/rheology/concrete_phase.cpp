@@ -1,0 +1,153 @@
+#include "foamCases/rheology/concrete_phase.h"
+
+#include "Enum.H"
+#include "fvcFlux.H"
+#include "gaussGrad.H"
+#include "surfaceInterpolate.H"
+
+namespace flowrest::rheology {
+
+using namespace Foam;
+
+namespace {
+
+const Enum<StrainRate>& strain_rate_names() {
+  static const Enum<StrainRate> names{{StrainRate::mixture, "mixture"}, {StrainRate::concrete, "concrete"}};
+  return names;
+}
+
+const Enum<Mixing>& mixing_names() {
+  static const Enum<Mixing> names{{Mixing::arithmetic, "arithmetic"},
+                                  {Mixing::harmonic, "harmonic"},
+                                  {Mixing::mass_weighted, "massWeighted"},
+                                  {Mixing::saturating, "saturating"}};
+  return names;
+}
+
+/// Pa s
+const dimensionedScalar none("none", dimDynamicViscosity, 0.0);
+
+}  // namespace
+
+PhaseRules PhaseRules::read(const dictionary& dict) {
+  PhaseRules rules;
+  rules.strain_rate = strain_rate_names().getOrDefault("strainRate", dict, rules.strain_rate);
+  rules.mixing = mixing_names().getOrDefault("mixing", dict, rules.mixing);
+  rules.full_at = dict.getOrDefault<scalar>("fullAt", rules.full_at);
+  if (!(rules.full_at > 0.0 && rules.full_at <= 1.0))
+    FatalIOErrorInFunction(dict) << "fullAt is " << rules.full_at
+                                 << "; it must be a volume fraction above 0 and at most 1"
+                                 << exit(FatalIOError);
+  return rules;
+}
+
+ConcretePhase::ConcretePhase(const volVectorField& velocity, const surfaceScalarField& flux,
+                             const word& phase, const dimensionedScalar& density)
+    : velocity_(velocity), flux_(flux), phase_(phase), density_(density) {}
+
+const volScalarField* ConcretePhase::find_fraction() const {
+  return mesh().findObject<volScalarField>(IOobject::groupName("alpha", phase_));
+}
+
+const incompressibleTwoPhaseMixture* ConcretePhase::find_mixture() const {
+  return mesh().findObject<incompressibleTwoPhaseMixture>("transportProperties");
+}
+
+bool ConcretePhase::is_first(const incompressibleTwoPhaseMixture& mixture) const {
+  return mixture.phase1Name() == phase_;
+}
+
+bool ConcretePhase::alone() const { return find_fraction() == nullptr; }
+
+tmp<volScalarField> ConcretePhase::fraction() const {
+  if (const auto* alpha = find_fraction()) return min(max(*alpha, scalar(0)), scalar(1));
+  return volScalarField::New("alpha", mesh(), dimensionedScalar(1.0));
+}
+
+tmp<volScalarField> ConcretePhase::amount() const { return fraction() + dimensionedScalar(trace); }
+
+tmp<volScalarField> ConcretePhase::old_amount() const {
+  const auto* alpha = find_fraction();
+  if (alpha == nullptr) return amount();
+  return max(alpha->oldTime(), scalar(0)) + dimensionedScalar(trace);
+}
+
+bool ConcretePhase::find_amount_flux(tmp<surfaceScalarField>& result) const {
+  if (alone()) {
+    result = (1.0 + trace) * flux_;
+    return true;
+  }
+  const auto* mass_flux = mesh().findObject<surfaceScalarField>("rhoPhi");
+  const auto* mixture = find_mixture();
+  if (mass_flux == nullptr || mixture == nullptr) return false;
+  const auto& other = is_first(*mixture) ? mixture->rho2() : mixture->rho1();
+  result = (*mass_flux - other * flux_) / (density_ - other) + trace * flux_;
+  return true;
+}
+
+tmp<volTensorField> ConcretePhase::velocity_gradient(StrainRate rule) const {
+  tmp<surfaceVectorField> face_velocity;
+  if (rule == StrainRate::concrete && !alone()) {
+    face_velocity = interpolate(velocity_);
+  } else {
+    face_velocity = fvc::interpolate(velocity_);
+  }
+  // A face that is no cell's neighbour has the boundary's own velocity, whatever the rule.
+  auto& boundary = face_velocity.ref().boundaryFieldRef();
+  forAll(boundary, patch) {
+    if (!boundary[patch].coupled()) boundary[patch] = velocity_.boundaryField()[patch];
+  }
+  auto gradient = fv::gaussGrad<vector>::gradf(face_velocity(), "grad(" + velocity_.name() + ")");
+  fv::gaussGrad<vector>::correctBoundaryConditions(velocity_, gradient.ref());
+  return gradient;
+}
+
+tmp<volScalarField> ConcretePhase::shear_rate(const volTensorField& gradient) {
+  return std::sqrt(2.0) * mag(symm(gradient));
+}
+
+tmp<volScalarField> ConcretePhase::other_viscosity() const {
+  const auto* mixture = find_mixture();
+  if (alone() || mixture == nullptr) return volScalarField::New("otherViscosity", mesh(), none);
+  return is_first(*mixture) ? mixture->rho2() * mixture->nuModel2().nu()
+                            : mixture->rho1() * mixture->nuModel1().nu();
+}
+
+tmp<volScalarField> ConcretePhase::weight(const PhaseRules& rules) const {
+  const auto alpha = fraction();
+  if (alone()) return alpha;
+  if (rules.mixing == Mixing::saturating) return min(alpha / rules.full_at, scalar(1));
+  if (rules.mixing == Mixing::mass_weighted) {
+    const auto* mixture = find_mixture();
+    const auto& other = is_first(*mixture) ? mixture->rho2() : mixture->rho1();
+    return alpha() * density_ / (alpha() * density_ + (1.0 - alpha()) * other);
+  }
+  return alpha;
+}
+
+tmp<volScalarField> ConcretePhase::mixture_input(const PhaseRules& rules,
+                                                 const volScalarField& viscosity) const {
+  if (alone() || rules.mixing == Mixing::arithmetic) return viscosity / density_;
+  const auto amount_here = amount();
+  const auto alpha = fraction();
+  const auto air = other_viscosity();
+  if (rules.mixing == Mixing::harmonic) {
+    const auto mixed = 1.0 / (alpha() / viscosity + (1.0 - alpha()) / air());
+    return max(mixed - (1.0 - alpha()) * air(), none) / (amount_here * density_);
+  }
+  const auto share = weight(rules);
+  return max(share() * viscosity + (alpha() - share()) * air(), none) / (amount_here * density_);
+}
+
+template <class Type>
+tmp<GeometricField<Type, fvsPatchField, surfaceMesh>> ConcretePhase::interpolate(
+    const GeometricField<Type, fvPatchField, volMesh>& field) const {
+  const auto weights = amount();
+  return fvc::interpolate(weights() * field) / fvc::interpolate(weights());
+}
+
+template tmp<surfaceVectorField> ConcretePhase::interpolate(const volVectorField&) const;
+template tmp<surfaceTensorField> ConcretePhase::interpolate(const volTensorField&) const;
+template tmp<surfaceSymmTensorField> ConcretePhase::interpolate(const volSymmTensorField&) const;
+
+}  // namespace flowrest::rheology
