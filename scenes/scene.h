@@ -131,7 +131,8 @@ struct Mpm {
   Seeding seeding = Seeding::lattice;
   std::uint64_t seed = 1;  ///< of the jitter
   FluidUpdate fluid_update = FluidUpdate::implicit_update;
-  double flip_relaxation_time = 0.05;  ///< s, of `linear-flip`
+  double flip_relaxation_time = 0.05;          ///< s, of `linear-flip`
+  std::optional<double> apic_relaxation_time;  ///< s, of `quadratic-apic`: its transfer acts once over this
   bool operator==(const Mpm&) const = default;
 };
 

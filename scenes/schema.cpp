@@ -181,6 +181,10 @@ std::vector<Key> mpm_keys() {
       number("mpm.flip_relaxation_time", "s", above(0.0, largest_time),
              AT(draft.scene.mpm.flip_relaxation_time),
              "time over which linear-flip forgets a particle's own velocity"),
+      number("mpm.apic_relaxation_time", "s", above(0.0, largest_time),
+             AT(draft.scene.mpm.apic_relaxation_time),
+             "time over which the transfer of quadratic-apic smooths velocities once, whatever the step")
+          .otherwise("that of a step of CFL 0.75, which is plain APIC"),
   };
 }
 

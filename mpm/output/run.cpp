@@ -101,15 +101,19 @@ class MpmRun {
 
   bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
 
+  /// Time that the fastest wave needs across a cell, s.
+  double cell_crossing_time() const {
+    const double stiffening = 1.0 + settings_.state.exponent * std::max(state_.largest_pressure, 0.0) /
+                                        settings_.state.bulk_modulus;
+    const double sound = scene_.material.longitudinal_speed() * std::sqrt(stiffening);
+    return settings_.cell / (sound + state_.largest_speed);
+  }
+
   /// The step: fixed, or Courant-controlled with the stiffest pressure's sound speed and the largest speed
   /// (NUMERICS: the stable limit counts |v| too), shortened a little so that it lands on the next row of the
   /// history.
   double next_step() const {
-    const double stiffening = 1.0 + settings_.state.exponent * std::max(state_.largest_pressure, 0.0) /
-                                        settings_.state.bulk_modulus;
-    const double sound = scene_.material.longitudinal_speed() * std::sqrt(stiffening);
-    double step = scene_.mpm.time_step ? *scene_.mpm.time_step
-                                       : scene_.mpm.cfl * settings_.cell / (sound + state_.largest_speed);
+    double step = scene_.mpm.time_step ? *scene_.mpm.time_step : scene_.mpm.cfl * cell_crossing_time();
     if (!scene_.mpm.time_step && settings_.explicit_fluid)
       step = std::min(step, scenes::step_limits(scene_).viscous);
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
@@ -120,6 +124,8 @@ class MpmRun {
 
   void advance() {
     const double step = next_step();
+    // A step of Courant number 0.75, the default, is plain APIC; a shorter one smooths as much a second.
+    solver_->set_apic_relaxation_time(scene_.mpm.apic_relaxation_time.value_or(0.75 * cell_crossing_time()));
     const StepResult result = solver_->step(step, acceleration_at(scene_, state_.time));
     state_.step = step;
     state_.steps += 1.0;

@@ -8,19 +8,27 @@
 /// instruction sets.
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// Four values of one node record.
-template <class T>
+/// Four values of one node record, or the eight of a pair.
+template <class T, int Values>
 struct RecordOf;
 template <>
-struct RecordOf<float> {
+struct RecordOf<float, 4> {
   typedef float type __attribute__((vector_size(16), aligned(4), may_alias));
 };
 template <>
-struct RecordOf<double> {
+struct RecordOf<float, 8> {
+  typedef float type __attribute__((vector_size(32), aligned(4), may_alias));
+};
+template <>
+struct RecordOf<double, 4> {
   typedef double type __attribute__((vector_size(32), aligned(8), may_alias));
 };
-template <class T>
-using Record = typename RecordOf<T>::type;
+template <>
+struct RecordOf<double, 8> {
+  typedef double type __attribute__((vector_size(64), aligned(8), may_alias));
+};
+template <class T, int Values = 4>
+using Record = typename RecordOf<T, Values>::type;
 
 /// As many particles as one register of this instruction set holds.
 template <class T>
@@ -36,13 +44,13 @@ struct LanesOf<double> {
 template <class T>
 using Lanes = typename LanesOf<T>::type;
 
-template <class T>
-FLOWREST_INLINE Record<T>& record_at(T* p) {
-  return *reinterpret_cast<Record<T>*>(p);
+template <int Values = 4, class T>
+FLOWREST_INLINE Record<T, Values>& record_at(T* p) {
+  return *reinterpret_cast<Record<T, Values>*>(p);
 }
-template <class T>
-FLOWREST_INLINE const Record<T>& record_at(const T* p) {
-  return *reinterpret_cast<const Record<T>*>(p);
+template <int Values = 4, class T>
+FLOWREST_INLINE const Record<T, Values>& record_at(const T* p) {
+  return *reinterpret_cast<const Record<T, Values>*>(p);
 }
 template <class T>
 FLOWREST_INLINE Lanes<T>& lanes_at(T* p) {

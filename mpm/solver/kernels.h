@@ -34,7 +34,7 @@ struct StepParameters {
   T cell{};             ///< m
   T density{};          ///< kg/m3, initial
   T acceleration[3]{};  ///< m/s2, of gravity and body force
-  T keep{};             ///< FLIP: share of the particle's own velocity kept, exp(-step / relaxation time)
+  T keep{};             ///< share of the particle's own velocity (and APIC's affine part) kept over the step
   FlowParameters<T> flow;
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;
@@ -64,15 +64,14 @@ using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const T* a
 template <class T>
 struct Kernels {
   int dimension = 0;
-  int records = 1;  ///< records per node, in arenas and nodes
   BlockStage<T> particles_to_grid =
       nullptr;  ///< mass, momentum and the impulse of the step's forces into the arena
   NodeStage<T> update_nodes = nullptr;  ///< arenas summed into velocities
   BlockStage<T> grid_to_particles =
-      nullptr;                         ///< APIC: velocities, strain, stress, positions
-                                       ///< FLIP: velocities, and their momentum re-mapped into the arena
-  NodeStage<T> remap_nodes = nullptr;  ///< FLIP only (MUSL)
-  BlockStage<T> remapped_to_particles = nullptr;  ///< FLIP only (MUSL): strain, stress, positions
+      nullptr;                         ///< quadratic: velocities, strain, stress, positions
+                                       ///< linear: velocities, and their momentum re-mapped into the arena
+  NodeStage<T> remap_nodes = nullptr;  ///< linear only (MUSL)
+  BlockStage<T> remapped_to_particles = nullptr;  ///< linear only (MUSL): strain, stress, positions
 };
 
 /// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or

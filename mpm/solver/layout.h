@@ -16,9 +16,10 @@ constexpr int cells_per_block = power(block_edge, Dim);
 template <int Dim>
 constexpr int nodes_per_arena = power(arena_edge, Dim);
 
-/// Node records are four wide: (mass, momentum or velocity). FLIP carries a second record, (0, force or old
-/// velocity).
+/// Node records are four wide, and a node has two: in arenas (mass, momentum) and (0, impulse of the step's
+/// forces), in nodes (mass, new velocity) and (0, new velocity - keep * old velocity).
 constexpr int record = 4;
+constexpr int node_values = 2 * record;
 
 /// A plane wall on a face of the background grid.
 enum class PlaneWall : std::uint8_t { none, slip, no_slip };

@@ -58,13 +58,15 @@ class SolverOf final : public Solver {
 
   StepResult step(double step, const std::array<double, 3>& acceleration) override {
     parameters_.step = static_cast<T>(step);
-    parameters_.keep = static_cast<T>(std::exp(-step / settings_.flip_relaxation_time));
+    parameters_.keep = static_cast<T>(share_kept(step));
     for (std::size_t a = 0; a < 3; ++a) parameters_.acceleration[a] = static_cast<T>(acceleration[a]);
     run_stages();
     const StepResult result = collect(step);
     relocate();
     return result;
   }
+
+  void set_apic_relaxation_time(double time) override { apic_relaxation_time_ = time; }
 
   void visit(const std::function<void(const ParticleBatch&)>& use) override {
     ParticleBatch batch;
@@ -139,6 +141,14 @@ class SolverOf final : public Solver {
     p.smallest_mass = static_cast<T>(full * 1e-25);
   }
 
+  /// Share of their own velocity that particles keep over a step. APIC: the rest, and so the smoothing of the
+  /// transfer, grows in proportion to the step and is whole from one relaxation time on.
+  double share_kept(double step) const {
+    if (settings_.transfer == Transfer::quadratic_apic)
+      return std::max(0.0, 1.0 - step / std::max(apic_relaxation_time_, step));
+    return std::exp(-step / settings_.flip_relaxation_time);
+  }
+
   static bool is_thixotropic(Law law) {
     return law == Law::elasto_viscoplastic_thixotropic || law == Law::papanastasiou_thixotropic ||
            law == Law::bi_viscous_thixotropic;
@@ -154,9 +164,9 @@ class SolverOf final : public Solver {
   }
 
   void prepare() {
-    const std::size_t node_values = static_cast<std::size_t>(kernels_.records) * record;
-    const auto arena_size = static_cast<std::size_t>(power(arena_edge, settings_.dimension)) * node_values;
-    const auto nodes_size = static_cast<std::size_t>(power(block_edge, settings_.dimension)) * node_values;
+    const auto values = static_cast<std::size_t>(node_values);
+    const auto arena_size = static_cast<std::size_t>(power(arena_edge, settings_.dimension)) * values;
+    const auto nodes_size = static_cast<std::size_t>(power(block_edge, settings_.dimension)) * values;
     const std::size_t slots = blocks_.slot_count();
     if (arenas_.size() < slots * arena_size) {
       const std::size_t room = slots + slots / 4;
@@ -327,6 +337,7 @@ class SolverOf final : public Solver {
   std::string instruction_set_;
   Kernels<T> kernels_;
   StepParameters<T> parameters_;
+  double apic_relaxation_time_ = 0.0;
   int threads_ = 1;
   int tile_capacity_ = usual_tile_capacity;
   AlignedArray<T> arenas_, nodes_;

@@ -84,6 +84,9 @@ class Solver {
   /// Advances by `step` seconds under a uniform acceleration (m/s2, per axis of the solver).
   /// @throws runs::NumericsError where a particle moved further than a cell or is not finite.
   virtual StepResult step(double step, const std::array<double, 3>& acceleration) = 0;
+  /// Sets the time over which APIC's transfer smooths velocities once, s; zero, as a solver starts, for once a
+  /// step. Linear transfers have their own, fixed one.
+  virtual void set_apic_relaxation_time(double) = 0;
   /// Calls `use` for every block in turn.
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
   virtual SolverState state() = 0;

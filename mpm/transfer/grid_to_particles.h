@@ -11,17 +11,17 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// section 4).
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile, const T* arena,
-                         int node_stride, const T* radial, T* dilatation) {
+                         const T* radial, T* dilatation) {
   const T half = T(0.5), per_cell = T(1) / step.cell;
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
     const int n = tile.cell_count(cell), first = tile.cell_first(cell);
     if (n == 0) continue;
-    const T* base = arena + cell_base<T, Dim>(cell) * node_stride + 1;
+    const T* base = arena + cell_base<T, Dim>(cell) * node_values + 1;
     T divergence = T(0), radial_velocity = T(0);
     for (int i = 0; i < Shape::nodes; ++i)
       for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
         for (int k = 0; k < Shape::nodes; ++k) {
-          const T* v = base + arena_index<Dim>(i, j, k) * node_stride;
+          const T* v = base + arena_index<Dim>(i, j, k) * node_values;
           const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1),
                   wk = Shape::weight(k, half);
           divergence += v[0] * Shape::slope(i, half) * wj * wk + v[Dim - 1] * wi * wj * Shape::slope(k, half);
@@ -36,8 +36,8 @@ void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile
 
 /// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
 template <class T, int Dim, bool Axisymmetric, class Shape>
-void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, int node_stride,
-                 const T* const* x, const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
+void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
+                 const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
   const int count = tile.count;
   const T per_cell = T(1) / step.cell;
   for (int i = 0; i < Dim; ++i)
@@ -59,7 +59,7 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
       s.hoop[q] = radial_velocity[q] / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
   }
   if (step.dilatation == Dilatation::centroid) {
-    centroid_dilatation<T, Dim, Axisymmetric, Shape>(step, tile, arena, node_stride, radial, s.dilatation);
+    centroid_dilatation<T, Dim, Axisymmetric, Shape>(step, tile, arena, radial, s.dilatation);
     return;
   }
   T* volume = tile.fresh();
@@ -164,51 +164,74 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
 /// Strain, stress and motion of a tile whose velocity gradients per cell are gathered.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
-                     const T* arena, int node_stride, T* const* x, const Gathered<T, Dim>& gathered,
+                     const T* arena, T* const* x, const Gathered<T, Dim>& gathered,
                      const T* const* advection) {
   Strain<T, Dim> s;
   const T* mass = tile.open(particles.mass);
   s.ratio = tile.open(particles.volume_ratio);
-  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, node_stride, x, gathered, mass, s);
+  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, s);
   update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
   move_particles<T, Dim, Shape>(step, particles, tile, x, advection, mass);
 }
 
-template <class T, int Dim, bool Axisymmetric>
-void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
-                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
-  alignas(64) T arena[nodes_per_arena<Dim> * record];
-  load_arena<T, Dim, Quadratic>(step, block, nodes, 1, arena);
-  Tile<T, Dim> tile(block, workspace);
-  while (tile.next()) {
-    T* x[Dim];
-    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
-    Weights<T, Dim, Quadratic> weights;
-    weights.make(tile, x);
-    const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, true, true, true);
-    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
-      if (tile.cell_count(cell) > 0)
-        gather<T, Dim, Quadratic, true, true, true>(arena + cell_base<T, Dim>(cell) * record, record, x,
-                                                    weights, tile.cell_first(cell), tile.cell_count(cell), g);
-    for (int c = 0; c < Dim; ++c) {
-      tile.close(particles.velocity[c], g.value[c]);
-      for (int a = 0; a < Dim; ++a) tile.close(particles.affine[c * Dim + a], g.affine[c][a]);
-    }
-    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, record, x, g, g.value);
+/// The particles' own velocities after the step, v <- keep (v + dv) + (1 - keep) v_grid, where
+/// `increment` is gathered from v_grid - keep * (v_grid before the step's forces).
+template <class T, int Dim>
+void relax_velocities(const StepParameters<T>& step, const T* const* increment, T* const* v, int count) {
+  for (int c = 0; c < Dim; ++c) {
+#pragma omp simd
+    for (int q = 0; q < count; ++q) v[c][q] = step.keep * v[c][q] + increment[c][q];
   }
 }
 
-/// FLIP's velocities: v <- keep (v + dv) + (1 - keep) v_grid, then their momentum mapped back for the strain
-/// (MUSL).
+/// APIC whose transfer acts at a rate: velocities and affine parts both keep the share `keep` of their own,
+/// so that what the transfer smooths a second does not depend on the step. Zero keeps nothing: APIC as
+/// published (Jiang et al. 2015).
+template <class T, int Dim, bool Axisymmetric>
+void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
+                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
+  alignas(64) T arena[nodes_per_arena<Dim> * node_values];
+  load_arena<T, Dim, Quadratic>(step, block, nodes, arena);
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    T *x[Dim], *v[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    for (int a = 0; a < Dim; ++a) v[a] = tile.open(particles.velocity[a]);
+    Weights<T, Dim, Quadratic> weights;
+    weights.make(tile, x);
+    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, true, true, false);
+    const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, true, false, true);
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+      const int n = tile.cell_count(cell), first = tile.cell_first(cell);
+      if (n == 0) continue;
+      const T* base = arena + cell_base<T, Dim>(cell) * node_values;
+      gather<T, Dim, Quadratic, true, true, false>(base, node_values, x, weights, first, n, motion);
+      gather<T, Dim, Quadratic, true, false, true>(base + record, node_values, x, weights, first, n,
+                                                   increment);
+    }
+    relax_velocities<T, Dim>(step, increment.value, v, tile.count);
+    for (int c = 0; c < Dim; ++c) {
+      tile.close(particles.velocity[c], v[c]);
+      for (int a = 0; a < Dim; ++a) {
+        T* affine = tile.open(particles.affine[c * Dim + a]);
+#pragma omp simd
+        for (int q = 0; q < tile.count; ++q) affine[q] = step.keep * affine[q] + increment.affine[c][a][q];
+        tile.close(particles.affine[c * Dim + a], affine);
+      }
+    }
+    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value);
+  }
+}
+
+/// FLIP's velocities, then their momentum mapped back for the strain (MUSL).
 template <class T, int Dim>
 void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
                        const BlockView& block, T* arenas, const T* nodes, const Workspace<T>& workspace) {
-  constexpr int values = 2 * record;
-  alignas(64) T arena[nodes_per_arena<Dim> * values];
-  load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
-  T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * values;
-  for (int i = 0; i < nodes_per_arena<Dim> * values; ++i) remapped[i] = T(0);
-  using Momentum = Source<T, Dim, Linear, false>;
+  alignas(64) T arena[nodes_per_arena<Dim> * node_values];
+  load_arena<T, Dim, Linear>(step, block, nodes, arena);
+  T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * node_values;
+  for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
+  using Momentum = Source<T, Dim, Linear, false, record>;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *v[Dim];
@@ -217,23 +240,20 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     const T* mass = tile.open(particles.mass);
     Weights<T, Dim, Linear> weights;
     weights.make(tile, x);
-    const Gathered<T, Dim> fresh = room_for_gathered<T, Dim>(tile, true, false, false);
-    const Gathered<T, Dim> old = room_for_gathered<T, Dim>(tile, true, false, false);
+    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, true, false, false);
+    const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, true, false, false);
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
-      const T* base = arena + cell_base<T, Dim>(cell) * values;
-      gather<T, Dim, Linear, true, false, false>(base, values, x, weights, first, n, fresh);
-      gather<T, Dim, Linear, true, false, false>(base + record, values, x, weights, first, n, old);
+      const T* base = arena + cell_base<T, Dim>(cell) * node_values;
+      gather<T, Dim, Linear, true, false, false>(base, node_values, x, weights, first, n, motion);
+      gather<T, Dim, Linear, true, false, false>(base + record, node_values, x, weights, first, n, increment);
     }
     Momentum* momentum = reinterpret_cast<Momentum*>(tile.memory + tile.capacity * tile.used);
+    relax_velocities<T, Dim>(step, increment.value, v, tile.count);
     for (int c = 0; c < Dim; ++c) {
-#pragma omp simd
-      for (int q = 0; q < tile.count; ++q)
-        v[c][q] = step.keep * (v[c][q] + fresh.value[c][q] - old.value[c][q]) +
-                  (T(1) - step.keep) * fresh.value[c][q];
       tile.close(particles.velocity[c], v[c]);
-      tile.close(particles.advection[c], fresh.value[c]);
+      tile.close(particles.advection[c], motion.value[c]);
     }
     for (int q = 0; q < tile.count; ++q) {
       momentum[q].value[0] = mass[q];
@@ -242,8 +262,8 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * values, values, momentum, weights,
-                                       tile.cell_first(cell), tile.cell_count(cell));
+        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * node_values, node_values,
+                                       momentum, weights, tile.cell_first(cell), tile.cell_count(cell));
   }
 }
 
@@ -251,9 +271,8 @@ template <class T, int Dim, bool Axisymmetric>
 void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
                            const BlockView& block, T* /*arenas*/, const T* nodes,
                            const Workspace<T>& workspace) {
-  constexpr int values = 2 * record;
-  alignas(64) T arena[nodes_per_arena<Dim> * values];
-  load_arena<T, Dim, Linear>(step, block, nodes, 2, arena);
+  alignas(64) T arena[nodes_per_arena<Dim> * node_values];
+  load_arena<T, Dim, Linear>(step, block, nodes, arena);
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *advection[Dim];
@@ -264,10 +283,10 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
     const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, Axisymmetric, true, false);
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * values, values, x,
-                                                          weights, tile.cell_first(cell),
+        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * node_values,
+                                                          node_values, x, weights, tile.cell_first(cell),
                                                           tile.cell_count(cell), g);
-    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, values, x, g, advection);
+    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection);
   }
 }
 

@@ -11,18 +11,16 @@ template <class T, int Dim, bool Axisymmetric>
 Kernels<T> make_kernels(Transfer transfer) {
   if (transfer == Transfer::quadratic_apic)
     return {Dim,
-            1,
-            particles_to_grid<T, Dim, Axisymmetric, Quadratic, false>,
-            update_nodes<T, Dim, false, false>,
+            particles_to_grid<T, Dim, Axisymmetric, Quadratic>,
+            update_nodes<T, Dim, false>,
             apic_to_particles<T, Dim, Axisymmetric>,
             nullptr,
             nullptr};
   return {Dim,
-          2,
-          particles_to_grid<T, Dim, Axisymmetric, Linear, true>,
-          update_nodes<T, Dim, true, false>,
+          particles_to_grid<T, Dim, Axisymmetric, Linear>,
+          update_nodes<T, Dim, false>,
           flip_to_particles<T, Dim>,
-          update_nodes<T, Dim, true, true>,
+          update_nodes<T, Dim, true>,
           remapped_to_particles<T, Dim, Axisymmetric>};
 }
 

@@ -6,12 +6,12 @@
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// Sums the arenas that share a block of nodes, in a fixed order, and turns momentum into velocity. Records
-/// after it: APIC (mass, velocity); FLIP (mass, new velocity), (0, old velocity).
-template <class T, int Dim, bool Flip, bool Remap>
+/// after it: (mass, new velocity), (0, new velocity - keep * old velocity). With Remap only the first is
+/// there.
+template <class T, int Dim, bool Remap>
 void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
-  constexpr int records = Flip ? 2 : 1;
-  constexpr int values = records * record;
-  T* out = nodes + static_cast<std::size_t>(view.slot) * cells_per_block<Dim> * values;
+  constexpr int records = Remap ? 1 : 2;
+  T* out = nodes + static_cast<std::size_t>(view.slot) * cells_per_block<Dim> * node_values;
   for (int node = 0; node < cells_per_block<Dim>; ++node) {
     int c[3];
     cell_coordinates<T, Dim>(node, c);
@@ -26,41 +26,40 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
       if (i >= arena_edge || j >= arena_edge || k >= arena_edge) continue;
       const T* from =
           arenas +
-          (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * values;
-      for (int r = 0; r < (Remap ? 1 : records); ++r) sum[r] += record_at(from + r * record);
+          (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * node_values;
+      for (int r = 0; r < records; ++r) sum[r] += record_at(from + r * record);
     }
     const T mass = sum[0][0];
     const T per_mass = mass > step.smallest_mass ? T(1) / mass : T(0);
-    if constexpr (Flip && !Remap) {
-      record_at(out + node * values) = (sum[0] + sum[1]) * per_mass;
-      record_at(out + node * values + record) = sum[0] * per_mass;
-      out[node * values + record] = T(0);
+    if constexpr (Remap) {
+      record_at(out + node * node_values) = sum[0] * per_mass;
     } else {
-      record_at(out + node * values) = sum[0] * per_mass;
+      const Record<T> velocity = (sum[0] + sum[1]) * per_mass;
+      record_at(out + node * node_values) = velocity;
+      record_at(out + node * node_values + record) = velocity - sum[0] * (step.keep * per_mass);
+      out[node * node_values + record] = T(0);
     }
-    out[node * values] = mass;
+    out[node * node_values] = mass;
   }
 }
 
 /// Copies the nodes a block's particles can see into one arena and sets the walls' values.
 template <class T, int Dim, class Shape>
-void load_arena(const StepParameters<T>& step, const BlockView& block, const T* nodes, int records,
-                T* arena) {
-  const int values = records * record;
+void load_arena(const StepParameters<T>& step, const BlockView& block, const T* nodes, T* arena) {
   for (int i = 0; i < arena_edge; ++i)
     for (int j = 0; j < (Dim == 3 ? arena_edge : 1); ++j)
       for (int half = 0; half < 2; ++half) {
         const int delta =
             Dim == 3 ? (i / block_edge) * 4 + (j / block_edge) * 2 + half : (i / block_edge) * 2 + half;
-        const int run = (half == 0 ? block_edge : arena_edge - block_edge) * values;
-        T* to = arena + arena_index<Dim>(i, j, half * block_edge) * values;
+        const int run = (half == 0 ? block_edge : arena_edge - block_edge) * node_values;
+        T* to = arena + arena_index<Dim>(i, j, half * block_edge) * node_values;
         const std::uint32_t slot = block.plus[delta];
         const int local = Dim == 3 ? (i % block_edge * block_edge + j % block_edge) * block_edge
                                    : i % block_edge * block_edge;
-        const T* from = nodes + (static_cast<std::size_t>(slot) * cells_per_block<Dim> + local) * values;
+        const T* from = nodes + (static_cast<std::size_t>(slot) * cells_per_block<Dim> + local) * node_values;
         for (int n = 0; n < run; ++n) to[n] = from[n];
       }
-  set_wall_velocities<T, Dim, Shape>(arena, records, block, step.bounds);
+  set_wall_velocities<T, Dim, Shape>(arena, block, step.bounds);
 }
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

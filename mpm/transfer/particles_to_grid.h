@@ -10,23 +10,24 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// One particle's contribution to the node records around it, the product of the axes' weights times
 /// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the
 /// plain weight (its offset times the affine part, its slope times the stress).
-template <class T, int Dim, class Shape, bool Terms>
+template <class T, int Dim, class Shape, bool Terms, int Values>
 struct Source {
-  T value[4];
-  T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][4];
+  T value[Values];
+  T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][Values];
 };
 
 /// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The
 /// accumulators of a slab of nodes stay in registers over the particles.
-template <class T, int Dim, class Shape, bool Terms>
-void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>* source,
+template <class T, int Dim, class Shape, bool Terms, int Values>
+void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms, Values>* source,
              const Weights<T, Dim, Shape>& w, int first, int count) {
   constexpr int nodes = Shape::nodes;
   constexpr int rows = Dim == 3 ? nodes : 1;
   constexpr int last = Dim - 1;
-  const Record<T> zero = {};
+  using R = Record<T, Values>;
+  const R zero = {};
   for (int i = 0; i < nodes; ++i) {
-    Record<T> sum[rows][nodes];
+    R sum[rows][nodes];
 #pragma GCC unroll 9
     for (int j = 0; j < rows; ++j)
 #pragma GCC unroll 9
@@ -37,20 +38,21 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>*
 #pragma GCC unroll 9
       for (int j = 0; j < rows; ++j) {
         T wij = wi;
-        Record<T> plane;
+        R plane;
         if constexpr (Dim == 3) {
           const T wj = w.weight[1][j][q];
           wij = wi * wj;
-          plane = wij * record_at(s.value);
-          if constexpr (Terms) plane += wj * record_at(s.term[0][i]) + wi * record_at(s.term[1][j]);
+          plane = wij * record_at<Values>(s.value);
+          if constexpr (Terms)
+            plane += wj * record_at<Values>(s.term[0][i]) + wi * record_at<Values>(s.term[1][j]);
         } else {
-          plane = wij * record_at(s.value);
-          if constexpr (Terms) plane += record_at(s.term[0][i]);
+          plane = wij * record_at<Values>(s.value);
+          if constexpr (Terms) plane += record_at<Values>(s.term[0][i]);
         }
 #pragma GCC unroll 9
         for (int k = 0; k < nodes; ++k) {
           sum[j][k] += w.weight[last][k][q] * plane;
-          if constexpr (Terms) sum[j][k] += wij * record_at(s.term[last][k]);
+          if constexpr (Terms) sum[j][k] += wij * record_at<Values>(s.term[last][k]);
         }
       }
     }
@@ -58,18 +60,18 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms>*
     for (int j = 0; j < rows; ++j)
 #pragma GCC unroll 9
       for (int k = 0; k < nodes; ++k)
-        record_at(arena_cell + arena_index<Dim>(i, j, k) * node_stride) += sum[j][k];
+        record_at<Values>(arena_cell + arena_index<Dim>(i, j, k) * node_stride) += sum[j][k];
   }
 }
 
-/// Mass, momentum and the impulse of the step's forces of one block's particles, into that block's arena.
-template <class T, int Dim, bool Axisymmetric, class Shape, bool Flip>
+/// Mass, momentum and the impulse of the step's forces of one block's particles, into that block's arena:
+/// per node (mass, momentum) and (0, impulse).
+template <class T, int Dim, bool Axisymmetric, class Shape>
 void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles,
                        const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
-  constexpr int records = Flip ? 2 : 1;
-  constexpr int arena_values = nodes_per_arena<Dim> * records * record;
-  using Momentum = Source<T, Dim, Shape, !Flip>;  // FLIP: (m, m v) alone
-  using Force = Source<T, Dim, Shape, true>;
+  constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
+  constexpr int arena_values = nodes_per_arena<Dim> * node_values;
+  using Sources = Source<T, Dim, Shape, true, node_values>;
   T* arena = arenas + static_cast<std::size_t>(block.slot) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
@@ -108,13 +110,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
 
     // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
     // workspace's rest, and what only they need is read from the particles' arrays straight away.
-    constexpr int source_values =
-        static_cast<int>((sizeof(Momentum) + (Flip ? sizeof(Force) : 0)) / sizeof(T));
-    T* source_memory = tile.memory + tile.capacity * tile.used;
-    Momentum* momentum = reinterpret_cast<Momentum*>(source_memory);
-    Force* force = reinterpret_cast<Force*>(source_memory +
-                                            static_cast<int>(sizeof(Momentum) / sizeof(T)) * tile.capacity);
-    static_assert(source_values + 30 <= workspace_arrays);
+    Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
+    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 30 <= workspace_arrays);
     const T dt = step.step, impulse_per_cell = dt / step.cell;
     const std::uint32_t* list = block.list + tile.first;
     for (int q = 0; q < count; ++q) {
@@ -130,10 +127,12 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       const T m = mass[q], scale = -volume[q] * impulse_per_cell;
       const Record<T> push = {T(0), m * dt * step.acceleration[0], m * dt * step.acceleration[1],
                               Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
-      Record<T> moving = {m, m * particles.velocity[0][id], m * particles.velocity[1][id],
-                          Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};
       Record<T> forcing = push;
       if constexpr (Axisymmetric) forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+      Sources& source = sources[q];
+      record_at(source.value) = Record<T>{m, m * particles.velocity[0][id], m * particles.velocity[1][id],
+                                          Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};
+      record_at(source.value + record) = forcing;
       Record<T> stress[Dim];
       if constexpr (Dim == 3) {
         stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, scale * dev.xz};
@@ -143,21 +142,16 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, T(0)};
         stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), T(0)};
       }
-      if constexpr (Flip) {
-        record_at(momentum[q].value) = moving;
-        record_at(force[q].value) = forcing;
-        for (int a = 0; a < Dim; ++a)
+      for (int a = 0; a < Dim; ++a) {
+        for (int n = 0; n < Shape::nodes; ++n)
+          record_at(source.term[a][n] + record) = weights.slope[a][n][q] * stress[a];
+        if constexpr (affine) {
+          const Record<T> slant = {T(0), m * particles.affine[a][id], m * particles.affine[Dim + a][id],
+                                   Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
           for (int n = 0; n < Shape::nodes; ++n)
-            record_at(force[q].term[a][n]) = weights.slope[a][n][q] * stress[a];
-      } else {
-        record_at(momentum[q].value) = moving + forcing;
-        for (int a = 0; a < Dim; ++a) {
-          const Record<T> affine = {T(0), m * particles.affine[a][id], m * particles.affine[Dim + a][id],
-                                    Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
-          for (int n = 0; n < Shape::nodes; ++n)
-            record_at(momentum[q].term[a][n]) =
-                (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * affine +
-                weights.slope[a][n][q] * stress[a];
+            record_at(source.term[a][n]) = (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * slant;
+        } else {
+          for (int n = 0; n < Shape::nodes; ++n) record_at(source.term[a][n]) = Record<T>{};
         }
       }
     }
@@ -166,10 +160,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       const int n = tile.cell_count(cell);
       if (n == 0) continue;
       const int first = tile.cell_first(cell);
-      T* base = arena + cell_base<T, Dim>(cell) * records * record;
-      scatter<T, Dim, Shape, !Flip>(base, records * record, momentum, weights, first, n);
-      if constexpr (Flip)
-        scatter<T, Dim, Shape, true>(base + record, records * record, force, weights, first, n);
+      T* base = arena + cell_base<T, Dim>(cell) * node_values;
+      scatter<T, Dim, Shape, true>(base, node_values, sources, weights, first, n);
       if (centroid) {
         // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
         T thrust = T(0);
@@ -182,7 +174,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
               const T half = T(0.5);
               const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1),
                       wk = Shape::weight(k, half);
-              T* to = base + arena_index<Dim>(i, j, k) * records * record + (Flip ? record : 0) + 1;
+              T* to = base + arena_index<Dim>(i, j, k) * node_values + record + 1;
               to[0] += push * Shape::slope(i, half) * wj * wk + hoop * wi * wj * wk;
               if constexpr (Dim == 3) to[1] += push * wi * Shape::slope(j, half) * wk;
               to[Dim - 1] += push * wi * wj * Shape::slope(k, half);
@@ -190,7 +182,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       }
     }
   }
-  if constexpr (Shape::nodes == 3) fold_ghosts<T, Dim>(arena, records, block, step.bounds);
+  if constexpr (Shape::nodes == 3) fold_ghosts<T, Dim>(arena, block, step.bounds);
 }
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

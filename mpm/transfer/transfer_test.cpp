@@ -38,7 +38,7 @@ GridSums to_grid(const SolverSettings& s, const std::vector<Seed>& seeds, const 
   SparseBlocks blocks(s.dimension, s.bounds);
   blocks.build(cells);
   const Kernels<T> stages = kernels<T>(set, s.dimension, s.axisymmetric, s.transfer);
-  const std::size_t values = static_cast<std::size_t>(stages.records) * record;
+  const std::size_t values = node_values;
   AlignedArray<T> arenas(blocks.slot_count() * static_cast<std::size_t>(power(arena_edge, s.dimension)) *
                          values);
   const auto nodes_per_block = static_cast<std::size_t>(power(block_edge, s.dimension));

@@ -101,14 +101,16 @@ double stopping_time(double driving, double yield, double slow) {
 class Duct : public RunTest {};
 
 TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
-  for (const auto& [yield, measured] : {std::pair{10.0, 2.03e-3}, std::pair{200.0, 2.74e-3}}) {
+  // Measured 5.7e-4, 4.8e-4, 3.4e-4 and 7.7e-4. Before the correction of the walls' transfer it was 2.0e-3 to
+  // 2.7e-3 at CFL 0.75, and 4.2e-3 at 0.3.
+  for (const double yield : {10.0, 50.0, 100.0, 200.0}) {
     const auto scene =
         duct({setting("material.yield_stress", yield), "time.end=12", "output.checkpoint_interval=12"});
     const std::string name = "yield " + std::to_string(yield);
     const auto run = run_and_read(scene, name);
     const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
-    std::printf("    yield %g Pa: L2 %.3g (measured %.3g)\n", yield, error, measured);
-    EXPECT_LE(error, 3e-3) << name;
+    std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
+    EXPECT_LE(error, 1e-3) << name;
     // The plug reaches yield / F from the middle; a cell either side of its edge shares its grid's nodes.
     Open open(read_checkpoint(folder / name)->solver, settings_of(scene));
     double fastest = 0.0;
@@ -119,10 +121,27 @@ TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
       ++in_plug;
     }
     if (yield < 100.0) continue;  // 5 mm either side of the middle: narrower than a cell
-    EXPECT_GT(in_plug, 1000);
+    EXPECT_GT(in_plug, 300);
     EXPECT_EQ(fastest, 0.0) << "plastic shear rate in the plug, 1/s; at the wall it is "
                             << (force * 0.25 - yield) / viscosity;
   }
+}
+
+TEST_F(Duct, QuadraticApicDoesNotDependOnTheStep) {
+  const auto profile = [&](const std::string& cfl) {
+    return run_and_read(duct({"material.yield_stress=10", "time.end=12", "mpm.cell=0.02", "mpm.cfl=" + cfl}),
+                        cfl)
+        .profiles.back();
+  };
+  const runs::Profile usual = profile("0.75"), fine = profile("0.2");
+  double difference = 0.0, scale = 0.0;
+  ASSERT_EQ(usual.value.size(), fine.value.size());
+  for (std::size_t i = 0; i < usual.value.size(); ++i) {
+    difference += (usual.value[i] - fine.value[i]) * (usual.value[i] - fine.value[i]);
+    scale += fine.value[i] * fine.value[i];
+  }
+  std::printf("    CFL 0.75 and 0.2 differ by %.3g\n", std::sqrt(difference / scale));
+  EXPECT_LE(std::sqrt(difference / scale), 1e-3);
 }
 
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
@@ -141,12 +160,14 @@ TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
 }
 
 TEST_F(Duct, NewtonianFlowConvergesAtLeastWithTheSquareOfTheCell) {
-  // At 300 Pa s the flow is steady within a second.
+  // At 300 Pa s the flow is steady within a second. The force is a tenth of the others' tests: an elastic
+  // fluid whose stress turns with the material is thinner by (rate * viscosity / shear modulus)^2 (Johnson
+  // and Segalman 1977), 2e-4 at the wall under the whole force.
   const auto error = [&](const std::string& cell) {
-    const auto scene = duct(
-        {"material.model=newtonian", "material.plastic_viscosity=300", "time.end=3", "mpm.cell=" + cell});
+    const auto scene = duct({"material.model=newtonian", "material.plastic_viscosity=300", "time.end=3",
+                             "forces.body_force=[[0.0, 200.0]]", "mpm.cell=" + cell});
     return l2(run_and_read(scene, cell).profiles.back(),
-              [](double y) { return exact_velocity(y, 0.0, 300.0); });
+              [](double y) { return 0.1 * exact_velocity(y, 0.0, 300.0); });
   };
   const double coarse = error("0.05"), fine = error("0.025"), finest = error("0.0125");
   std::printf("    L2 %.3g, %.3g, %.3g at 50, 25, 12.5 mm: order %.2f, %.2f\n", coarse, fine, finest,
