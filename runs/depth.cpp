@@ -76,9 +76,19 @@ double centre_depth(std::span<const double> radius, std::span<const double> dept
   const std::size_t count = std::min(radius.size(), depth.size());
   if (count == 0) return 0.0;
   if (count == 1) return depth[0];
-  const double inner = radius[0] * radius[0];
-  const double outer = radius[1] * radius[1];
-  return depth[0] + (depth[0] - depth[1]) * inner / (outer - inner);
+  constexpr double usual_threshold = 0.003;
+  const double window = 0.25 * 0.5 * spread(radius, depth, usual_threshold);
+  // Least squares of c + s r, rings counting by their area.
+  double area = 0.0, first = 0.0, second = 0.0, value = 0.0, moment = 0.0;
+  for (std::size_t i = 0; i < count && (i < 2 || radius[i] <= window); ++i) {
+    const double r = radius[i];
+    area += r;
+    first += r * r;
+    second += r * r * r;
+    value += r * depth[i];
+    moment += r * r * depth[i];
+  }
+  return (value * second - moment * first) / (area * second - first * first);
 }
 
 }  // namespace flowrest::runs

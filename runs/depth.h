@@ -35,7 +35,9 @@ class RadialDepthAccumulator {
 /// interpolated linearly between ring centres; 0 where the depth is nowhere above it. m
 double spread(std::span<const double> radius, std::span<const double> depth, double threshold = 0.003);
 
-/// Depth at the centre: the parabola in r^2 through the innermost two rings taken at r = 0. m
+/// Depth at the centre, m: the line fitted by least squares to the depths within a quarter of the spread's
+/// radius, two rings at least, each counting by its area, taken at r = 0. An arrested profile falls linearly
+/// from its centre; the innermost ring alone holds so few particles that it says more of where they were put.
 double centre_depth(std::span<const double> radius, std::span<const double> depth);
 
 }  // namespace flowrest::runs

@@ -84,21 +84,36 @@ TEST(Spread, IsLinearBetweenCentresAndTakesTheLastFall) {
   EXPECT_DOUBLE_EQ(spread({}, {}, 0.003), 0.0);
 }
 
-TEST(CentreDepth, IsExactForAParabola) {
-  const std::vector<double> radius = {0.005, 0.015};
-  const auto parabola = [](double r) { return 0.04 - 3.0 * r * r; };
-  EXPECT_NEAR(centre_depth(radius, std::vector{parabola(0.005), parabola(0.015)}), 0.04, 1e-15);
+TEST(CentreDepth, IsExactForAPlateauAndForALine) {
+  std::vector<double> radius, line, plateau;
+  for (double r = 0.005; r < 0.4; r += 0.01) {
+    radius.push_back(r);
+    line.push_back(r < 0.3 ? 0.04 - 0.1 * r : 0.0);
+    plateau.push_back(r < 0.1 ? 0.3 : r < 0.2 ? 0.1 : 0.0);
+  }
+  EXPECT_NEAR(centre_depth(radius, line), 0.04, 1e-15);
+  EXPECT_NEAR(centre_depth(radius, plateau), 0.3, 1e-15);
+  EXPECT_NEAR(centre_depth(std::vector{0.1, 0.3}, std::vector{0.04, 0.02}), 0.05, 1e-15);
   EXPECT_DOUBLE_EQ(centre_depth(std::vector{0.005}, std::vector{0.04}), 0.04);
   EXPECT_DOUBLE_EQ(centre_depth({}, {}), 0.0);
 }
 
-TEST(CentreDepth, OfASampledParaboloidConvergesWithTheRings) {
-  double previous = 1.0;
+TEST(CentreDepth, HardlyMindsTheInnermostRing) {
+  std::vector<double> radius, depth;
+  for (double r = 0.005; r < 0.4; r += 0.01) {
+    radius.push_back(r);
+    depth.push_back(r < 0.28 ? 0.04 - 0.1 * r : 0.0);
+  }
+  depth.front() += 0.004;
+  EXPECT_NEAR(centre_depth(radius, depth), 0.04, 0.002);
+}
+
+TEST(CentreDepth, OfASampledParaboloidIsTakenForALineOverAQuarterOfItsRadius) {
+  // By least squares over the area a line's value at 0 is 0.3 of the parabola's fall over the window too
+  // high.
   for (const double spacing : {0.02, 0.01, 0.005}) {
     const auto depth = sampled_paraboloid(spacing, 0.04, 0.3, 60000);
-    const double error = std::abs(centre_depth(depth.centres(), depth.depth) - 0.04) / 0.04;
-    EXPECT_LT(error, 0.35 * previous) << "spacing " << spacing;
-    previous = error;
+    EXPECT_NEAR(centre_depth(depth.centres(), depth.depth), 0.04 * (1.0 + 0.3 / 16.0), 4e-4)
+        << "spacing " << spacing;
   }
-  EXPECT_LT(previous, 1e-3);
 }

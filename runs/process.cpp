@@ -94,8 +94,7 @@ Process::Process(const fs::path& program, const std::vector<std::string>& argume
   const auto argument_pointers = pointers(argument_texts);
   const auto environment_pointers = pointers(environment_texts);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0)
-    throw RunError(fmt::format("{}: cannot be written: {}", log.string(), std::strerror(errno)));
+  if (file < 0) throw RunError(fmt::format("{}: cannot be written: {}", log.string(), std::strerror(errno)));
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {

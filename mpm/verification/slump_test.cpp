@@ -67,7 +67,7 @@ scenes::Scene coarse_slump(const std::vector<std::string>& more = {}) {
 }  // namespace
 
 // Produced by the run that ComesToRestWhereItDidWhenThisWasWritten makes.
-constexpr double stored_spread_mm = 556.41, stored_height_mm = 42.68, stored_rest_s = 22.15;
+constexpr double stored_spread_mm = 556.41, stored_height_mm = 45.07, stored_rest_s = 22.15;
 
 class Slump : public RunTest {};
 
