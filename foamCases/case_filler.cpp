@@ -12,6 +12,7 @@
 #include "foamCases/concrete_laws.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
+#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -21,6 +22,9 @@ using scenes::Scene;
 using scenes::SceneError;
 
 namespace {
+
+constexpr double most_duct_cells = 1e5;
+constexpr double for_ever = 1e9;  // s
 
 /// The name by which a case loads the plug-in.
 constexpr const char* plug_in_link = "libflowrestRheology.so";
@@ -40,9 +44,7 @@ void check_model(const Scene& scene) {
   const auto& material = scene.material;
   switch (material.model) {
     case Model::elasto_viscoplastic:
-      refuse(scene,
-             "model elasto-viscoplastic: the OpenFOAM side has no such law yet; allowed: papanastasiou, "
-             "bi-viscous, newtonian");
+      break;
     case Model::papanastasiou:
       if (!material.regularisation_time)
         refuse(scene, "model papanastasiou needs material.regularisation_time, in s and above 0");
@@ -79,7 +81,7 @@ std::string mesh_parameters(const Scene& scene) {
 }
 
 std::string time_parameters(const Scene& scene) {
-  const double step = largest_time_step(scene);
+  const double step = scenes::largest_foam_step(scene);
   return fmt::format(
       "\n// Time, s.\n"
       "endTime             {};\n"
@@ -94,17 +96,57 @@ std::string time_parameters(const Scene& scene) {
 
 std::string phase_parameters(const Scene& scene) {
   return fmt::format(
-      "\n// Forces and walls.\n"
-      "gravity             (0 0 {});  // m/s2\n"
-      "baseWall            {};\n"
       "\n// Phases: densities in kg/m3, kinematic viscosities in m2/s. Air this viscous tames jets over the "
       "toe at no\n"
       "// cost in spread.\n"
       "airDensity          {};\n"
       "airViscosity        {};\n"
       "concreteDensity     {};\n\n",
-      -scene.forces.gravity, scene.base == scenes::Wall::slip ? "slip" : "noSlip", scene.foam.air_density,
-      scene.foam.air_kinematic_viscosity, scene.material.density);
+      scene.foam.air_density, scene.foam.air_kinematic_viscosity, scene.material.density);
+}
+
+const char* wall(const Scene& scene) { return scene.base == scenes::Wall::slip ? "slip" : "noSlip"; }
+
+std::string slump_parameters(const Scene& scene) {
+  return mesh_parameters(scene) + time_parameters(scene) +
+         fmt::format(
+             "\n// Forces and walls.\n"
+             "gravity             (0 0 {});  // m/s2\n"
+             "baseWall            {};\n",
+             -scene.forces.gravity, wall(scene));
+}
+
+/// A source holds for the steps that end within its times; a step that ends on a change still has the old
+/// force.
+std::string body_forces(const Scene& scene) {
+  const auto& forces = scene.forces.body_force;
+  const double late = 1e-3 * scenes::largest_foam_step(scene);
+  std::string text;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const auto& [time, force] = forces[i];
+    const double end = i + 1 < forces.size() ? forces[i + 1].first : for_ever;
+    text += fmt::format(
+        "    from{0}\n    {{\n        type            vectorSemiImplicitSource;\n        timeStart       "
+        "{1};\n"
+        "        duration        {2};\n        selectionMode   all;\n        volumeMode      specific;\n"
+        "        injectionRateSuSp {{ U (({3} 0 0) 0); }}\n    }}\n",
+        i, time + late, std::max(end - time - 0.5 * late, 0.0), force);
+  }
+  return text;
+}
+
+std::string duct_parameters(const Scene& scene) {
+  const auto cells = duct_cells(scene);
+  return fmt::format(
+             "// Mesh, m: a column of cells from plate to plate.\n"
+             "ductHeight          {};\n"
+             "ductCells           {};\n"
+             "cellWidth           {};\n",
+             scene.duct().height, cells, scene.duct().height / static_cast<double>(cells)) +
+         time_parameters(scene) +
+         fmt::format(
+             "\n// Forces (N/m3, from a time on) and walls.\nplateWall           {};\nbodyForces\n{{\n{}}}\n",
+             wall(scene), body_forces(scene));
 }
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -116,27 +158,29 @@ void write_text(const fs::path& path, const std::string& text) {
 }  // namespace
 
 void check_supported(const Scene& scene) {
-  if (scene.kind != scenes::Kind::slump)
-    refuse(scene, fmt::format("kind {}: there is no OpenFOAM case of it yet; allowed: slump",
-                              scenes::to_string(scene.kind)));
+  check_model(scene);
+  if (scene.kind == scenes::Kind::duct) {
+    duct_cells(scene);
+    return;
+  }
   if (scene.geometry.dimension != scenes::Dimension::axisymmetric)
     refuse(scene, fmt::format("geometry.dimension {}: the slump case is a wedge; allowed: axisymmetric",
                               scenes::to_string(scene.geometry.dimension)));
-  check_model(scene);
   wedge_grid(scene);
+}
+
+std::size_t duct_cells(const Scene& scene) {
+  const double cells = scene.duct().height / scene.foam.cell;
+  if (!(cells >= 0.5 && cells <= most_duct_cells))
+    refuse(scene, fmt::format("foam.cell = {:g} m lays {:.3g} cells between the plates; allowed: 1 to {:g}",
+                              scene.foam.cell, cells, most_duct_cells));
+  return static_cast<std::size_t>(std::lround(cells));
 }
 
 fs::path cases_folder() {
   if (const char* folder = std::getenv("FLOWREST_FOAM_CASES"); folder != nullptr && *folder != '\0')
     return folder;
   return FLOWREST_FOAM_CASES_FOLDER;
-}
-
-double largest_time_step(const Scene& scene) {
-  if (scene.foam.max_time_step) return *scene.foam.max_time_step;
-  const double viscous = scene.foam.cell * scene.foam.cell * scene.material.density /
-                         std::max(scene.material.plastic_viscosity, 1e-300);
-  return std::min(viscous, sample_interval(scene));
 }
 
 double sample_interval(const Scene& scene) {
@@ -150,8 +194,8 @@ std::string scene_parameters(const Scene& scene, bool plug_in) {
              "// includes it. SI units; stresses and viscosities of the transport models are over the "
              "density.\n\n",
              scene.name) +
-         mesh_parameters(scene) + time_parameters(scene) + phase_parameters(scene) +
-         concrete_laws(scene, plug_in);
+         (scene.kind == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene)) +
+         phase_parameters(scene) + concrete_laws(scene, plug_in);
 }
 
 void fill_case(const Scene& scene, const fs::path& directory, const std::optional<fs::path>& plug_in) {

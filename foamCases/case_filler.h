@@ -17,9 +17,8 @@ void check_supported(const scenes::Scene&);
 /// The folder of the cases: FLOWREST_FOAM_CASES where set, else the source tree's.
 std::filesystem::path cases_folder();
 
-/// The step above which the creeping material turns to noise: foam.max_time_step, or cell^2 density / plastic
-/// viscosity where that is shorter than a sample of the history. s
-double largest_time_step(const scenes::Scene&);
+/// Cells of a duct from plate to plate: foam.cell fitted to its height.
+std::size_t duct_cells(const scenes::Scene&);
 
 /// Simulated seconds between the samples interFoam writes for the gauges.
 double sample_interval(const scenes::Scene&);

@@ -30,16 +30,17 @@ void run_command(const FoamArguments& arguments) {
                                                         ("foam-" + scenes::to_string(scene.material.model))
                                                   : std::filesystem::path(arguments.directory);
   const auto outcome = run_scene(scene, options);
-  if (arguments.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"run", options.directory.string()},
-                                              {"status", runs::to_string(outcome.status)},
-                                              {"reason", outcome.reason},
-                                              {"verdict", outcome.verdict},
-                                              {"time_s", outcome.time},
-                                              {"spread_mm", 1e3 * outcome.spread}}
-                           .dump());
-  else
+  if (arguments.json) {
+    nlohmann::ordered_json line{{"run", options.directory.string()},
+                                {"status", runs::to_string(outcome.status)},
+                                {"reason", outcome.reason},
+                                {"verdict", outcome.verdict},
+                                {"time_s", outcome.time}};
+    line.update(outcome.gauges);
+    fmt::print("{}\n", line.dump());
+  } else {
     fmt::print("{}\n", options.directory.string());
+  }
   // As the shell does for a program that Ctrl-C ended.
   if (outcome.status == runs::Status::interrupted) throw CLI::RuntimeError(130);
 }
@@ -50,7 +51,8 @@ void add_commands(CLI::App& app) {
   auto* command = app.add_subcommand("foam", "Run a scene in interFoam: fills the case, runs it, gauges it");
   auto arguments = std::make_shared<FoamArguments>();
   command->add_option("SCENE", arguments->scene, "A scene's name, or the path of its file")->required();
-  command->add_option("--model", arguments->model, "papanastasiou, bi-viscous or newtonian");
+  command->add_option("--model", arguments->model,
+                      "elasto-viscoplastic, papanastasiou, bi-viscous or newtonian");
   command
       ->add_option("--set", arguments->set, "KEY=VALUE: overrides a key of the scene, e.g. foam.cell=0.005")
       ->take_all()

@@ -77,6 +77,7 @@ std::string common_coefficients(const Scene& scene, const std::string& indent) {
   text += fmt::format("{}mixing              {};\n", indent, mixing_name(scene.foam.mixing));
   if (scene.foam.mixing == FoamMixing::saturating)
     text += fmt::format("{}fullAt              {};\n", indent, scene.foam.full_at);
+  text += fmt::format("{}wetting             {};\n", indent, scenes::to_string(scene.foam.wetting));
   return text + fmt::format("{}strainRate          {};\n", indent, scenes::to_string(scene.foam.strain_rate));
 }
 
@@ -91,20 +92,45 @@ std::string plug_in_viscosity(const Scene& scene) {
       papanastasiou ? "s" : "1/s");
 }
 
+/// The elasto-viscoplastic law is a stress model; what the mixture is given as viscosity it does not use.
+std::string plug_in_stress(const Scene& scene) {
+  const auto& material = scene.material;
+  const std::string indent(12, ' ');
+  return fmt::format(
+      "concreteViscosity\n{{\n    transportModel      Newtonian;\n    nu                  {};\n}}\n\n"
+      "concreteStress\n{{\n    laminar\n    {{\n        laminarModel        elastoViscoplasticBingham;\n"
+      "        elastoViscoplasticBinghamCoeffs\n        {{\n"
+      "{}phase               concrete;\n{}rho                 {};  // kg/m3\n"
+      "{}youngsModulus       {};  // Pa\n{}poissonRatio        {};\n{}        }}\n    }}\n}}\n",
+      material.plastic_viscosity / material.density, indent, indent, material.density, indent,
+      material.youngs_modulus, indent, material.poisson_ratio, common_coefficients(scene, indent));
+}
+
+std::string stress_model(const Scene& scene, bool plug_in) {
+  const std::string none = "\nconcreteStress\n{\n}\n";
+  if (!plug_in) return built_in_viscosity(scene.material) + none;
+  if (scene.material.model == Model::elasto_viscoplastic) return plug_in_stress(scene);
+  return plug_in_viscosity(scene) + none;
+}
+
 }  // namespace
 
 std::string concrete_laws(const Scene& scene, bool plug_in) {
-  const bool thixotropic = plug_in && scene.thixotropy;
+  std::string sampled, state;
+  if (plug_in && scene.thixotropy) sampled += " flocculation";
+  if (scene.material.model == Model::elasto_viscoplastic) {
+    sampled += " plasticShearRate";
+    state += " stress";
+  }
   return fmt::format(
              "// Libraries the solver loads beside its own; fields sampled for the history, and those of a "
              "full "
              "state.\n"
              "rheologyLibraries   ({});\n"
              "historyObjects      (alpha.concrete U{});\n"
-             "stateObjects        (alpha.concrete U p_rgh phi{});\n\n",
-             plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", thixotropic ? " flocculation" : "",
-             thixotropic ? " flocculation" : "") +
-         (plug_in ? plug_in_viscosity(scene) : built_in_viscosity(scene.material));
+             "stateObjects        (alpha.concrete U p_rgh phi{}{});\n\n",
+             plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state) +
+         stress_model(scene, plug_in);
 }
 
 }  // namespace flowrest::foam

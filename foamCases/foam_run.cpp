@@ -3,20 +3,24 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
+#include <vector>
 
 #include "foamCases/case_filler.h"
+#include "foamCases/duct_sampler.h"
 #include "foamCases/field_file.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
-#include "foamCases/wedge_grid.h"
 #include "runs/process.h"
 #include "runs/progress.h"
+#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -26,15 +30,15 @@ using runs::Status;
 
 namespace {
 
-constexpr double poll_interval = 0.05;    // s
-constexpr double rim_depth_bound = 3e-3;  // m, the depth at which the spread is read
-constexpr double volume_bound = 0.1;      // relative; a bounded phase fraction keeps the volume to 1e-6
+constexpr double poll_interval = 0.05;  // s
 /// A step this much below the largest, this often in succession, gets nowhere.
 constexpr double collapsed_step = 1e-5;
 constexpr int collapsed_steps = 20;
 
+/// What makes a case's mesh and initial fields, in order, and what solves it.
 struct Programs {
-  fs::path block_mesh, set_alpha_field, set_fields, inter_foam;
+  std::vector<fs::path> prepare;
+  fs::path inter_foam;
 };
 
 fs::path needed_program(const std::string& name) {
@@ -43,9 +47,16 @@ fs::path needed_program(const std::string& name) {
       "{} is not on the PATH: `flowrest foam` needs OpenFOAM (Debian: apt-get install openfoam)", name));
 }
 
-Programs needed_programs() {
-  return {needed_program("blockMesh"), needed_program("setAlphaField"), needed_program("setFields"),
+Programs needed_programs(const scenes::Scene& scene) {
+  if (scene.kind == scenes::Kind::duct) return {{needed_program("blockMesh")}, needed_program("interFoam")};
+  return {{needed_program("blockMesh"), needed_program("setAlphaField"), needed_program("setFields")},
           needed_program("interFoam")};
+}
+
+std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const fs::path& case_directory,
+                                      runs::RunWriter& writer) {
+  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, case_directory, writer);
+  return std::make_unique<SlumpSampler>(scene, case_directory, writer);
 }
 
 /// Debian's OpenFOAM needs to be told where its etc folder is, and nothing else.
@@ -56,9 +67,9 @@ std::map<std::string, std::string> openfoam_environment() {
 }
 
 /// One run from the filled case to the summary.
-class SlumpRun {
+class CaseRun {
  public:
-  SlumpRun(const scenes::Scene& scene, const RunOptions& options, Programs programs)
+  CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs)
       : scene_(scene),
         options_(options),
         programs_(std::move(programs)),
@@ -72,17 +83,22 @@ class SlumpRun {
     const runs::InterruptGuard guard;
     try {
       fill_case(scene_, case_, plug_in_);
-      writer_.info()["cells"] = wedge_grid(scene_).cells();
+      sampler_ = make_sampler(scene_, case_, writer_);
+      writer_.info()["cells"] = sampler_->cells();
       if (prepare()) solve();
     } catch (const std::exception& fault) {
       fail(fault.what());
     }
     summarise();
-    return {status_, reason_, monitor_.verdict(), state().time, state().spread};
+    return {status_, reason_, monitor_.verdict(), time(), gauges()};
   }
 
  private:
-  SlumpState state() const { return sampler_ ? sampler_->state() : SlumpState{}; }
+  double time() const { return sampler_ ? sampler_->time() : 0.0; }
+  nlohmann::ordered_json gauges() const {
+    return sampler_ ? sampler_->summary() : nlohmann::ordered_json::object();
+  }
+  std::size_t cells() const { return sampler_ ? sampler_->cells() : 0; }
 
   /// The first reason is the one that counts.
   void fail(const std::string& reason) {
@@ -93,8 +109,8 @@ class SlumpRun {
 
   /// Mesh and initial fields. False where it went wrong or was interrupted.
   bool prepare() {
-    return run_to_end(programs_.block_mesh) && run_to_end(programs_.set_alpha_field) &&
-           run_to_end(programs_.set_fields);
+    return std::all_of(programs_.prepare.begin(), programs_.prepare.end(),
+                       [&](const fs::path& program) { return run_to_end(program); });
   }
 
   bool run_to_end(const fs::path& program) {
@@ -116,7 +132,6 @@ class SlumpRun {
   }
 
   void solve() {
-    sampler_.emplace(scene_, case_, writer_);
     sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
     const fs::path log_path = case_ / "log.interFoam";
     runs::Process solver(programs_.inter_foam, {}, case_, log_path, openfoam_environment());
@@ -153,8 +168,7 @@ class SlumpRun {
       if (running) fail(fault.what());
     }
     watch();
-    progress_.update(state().time,
-                     fmt::format("{:.2f} s, spread {:.1f} mm", state().time, 1e3 * state().spread));
+    progress_.update(time(), fmt::format("{:.2f} s, {}", time(), sampler_->progress()));
   }
 
   void count(const SolverStep& step) {
@@ -163,7 +177,7 @@ class SlumpRun {
     ++steps_;
     max_courant_ = std::max(max_courant_, step.courant);
     max_time_step_ = std::max(max_time_step_, step.time_step);
-    small_steps_ = step.time_step < collapsed_step * largest_time_step(scene_) ? small_steps_ + 1 : 0;
+    small_steps_ = step.time_step < collapsed_step * scenes::largest_foam_step(scene_) ? small_steps_ + 1 : 0;
     if (small_steps_ == collapsed_steps)
       fail(fmt::format("the time step collapsed to {:.2g} s at {:.4g} s: the flow diverges", step.time_step,
                        step.time));
@@ -173,15 +187,7 @@ class SlumpRun {
   void watch() {
     if (const auto fault = log_.fault(); !fault.empty())
       fail(fmt::format("interFoam at {:.4g} s: {}", log_.time_begun().value_or(0.0), fault));
-    const auto now = state();
-    if (now.rim_depth > rim_depth_bound)
-      fail(fmt::format(
-          "the concrete reached the rim of the mesh at {:.4g} s: geometry.domain_radius = {:g} m must be "
-          "larger",
-          now.time, scene_.slump().domain_radius));
-    if (!(now.volume_error < volume_bound))
-      fail(fmt::format("the volume of concrete is off by {:.0f} % at {:.4g} s: the flow diverges",
-                       100.0 * now.volume_error, now.time));
+    if (const auto fault = sampler_->fault(); !fault.empty()) fail(fault);
   }
 
   /// Asks the solver to end its step and write; insists where it does not, or where the user asks again.
@@ -214,38 +220,33 @@ class SlumpRun {
     monitor_.finish();
     const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
     if (status_ == Status::interrupted && reason_.empty())
-      reason_ = fmt::format("interrupted at {:.4g} s", state().time);
+      reason_ = fmt::format("interrupted at {:.4g} s", time());
     write_info(wall);
     writer_.finish(status_, reason_, monitor_.verdict());
-    progress_.finish(fmt::format(
-        "{} at {:.4g} s, spread {:.1f} mm, {}; {} steps, {:.3g} steps/s, {:.3g} cell-steps/s, {:.4g} "
-        "simulated s an hour",
-        runs::to_string(status_), state().time, 1e3 * state().spread, monitor_.verdict(), steps_,
-        static_cast<double>(steps_) / wall, static_cast<double>(steps_ * wedge_grid(scene_).cells()) / wall,
-        3600.0 * state().time / wall));
+    progress_.finish(
+        fmt::format("{} at {:.4g} s, {}, {}; {} steps, {:.3g} steps/s, {:.3g} cell-steps/s, {:.4g} "
+                    "simulated s an hour",
+                    runs::to_string(status_), time(), sampler_ ? sampler_->progress() : "nothing run",
+                    monitor_.verdict(), steps_, static_cast<double>(steps_) / wall,
+                    static_cast<double>(steps_ * cells()) / wall, 3600.0 * time() / wall));
   }
 
   void write_info(double wall) {
     auto& info = writer_.info();
-    const auto now = state();
     double cpu = runs::cpu_seconds() - own_cpu_before_;
     cpu_by_program_["flowrest"] = cpu;
     for (const auto& [program, seconds] : cpu_by_program_)
       if (program != "flowrest") cpu += seconds;
     info["openfoam"] = log_.build();
     info["laws"] = plug_in_ ? "plug-in" : "built-in";
-    info["time_reached_s"] = now.time;
+    info["time_reached_s"] = time();
     info["steps"] = steps_;
     info["wall_s"] = wall;
     info["cpu_s"] = cpu;
     info["cpu_by_program_s"] = cpu_by_program_;
-    info["cell_steps_per_cpu_s"] = static_cast<double>(steps_ * wedge_grid(scene_).cells()) / cpu;
+    info["cell_steps_per_cpu_s"] = static_cast<double>(steps_ * cells()) / cpu;
     info["rest_time_s"] = nullptr;  // a fluid is never at rest
-    info["spread_mm"] = 1e3 * now.spread;
-    info["front_mm"] = 1e3 * now.front;
-    info["height_mm"] = 1e3 * now.height;
-    info["initial_volume_error"] = now.first_volume / scene_.slump().volume() - 1.0;
-    info["volume_error"] = now.volume_error;
+    info.update(gauges());
     info["courant_max"] = max_courant_;
     info["time_step_max_s"] = max_time_step_;
     info["noise"] = {{"measure", "initial residual of U, median of blocks of steps"},
@@ -262,7 +263,7 @@ class SlumpRun {
   fs::path case_;
   std::optional<fs::path> plug_in_;
   runs::Progress progress_;
-  std::optional<SlumpSampler> sampler_;
+  std::unique_ptr<Sampler> sampler_;
   SolverLog log_;
   NoiseMonitor monitor_;
   Status status_ = Status::running;
@@ -281,7 +282,7 @@ class SlumpRun {
 RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
   check_supported(scene);
   plug_in_for(scene);  // it says what is missing before anything is written
-  const auto outcome = SlumpRun(scene, options, needed_programs()).run();
+  const auto outcome = CaseRun(scene, options, needed_programs(scene)).run();
   if (outcome.status == Status::failed)
     throw runs::NumericsError(
         fmt::format("{}; the logs are in {}", outcome.reason, (options.directory / "case").string()));

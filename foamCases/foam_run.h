@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "runs/run_directory.h"
@@ -20,8 +21,8 @@ struct RunOutcome {
   runs::Status status = runs::Status::running;
   std::string reason;
   std::string verdict;
-  double time = 0.0;    ///< s, reached
-  double spread = 0.0;  ///< m
+  double time = 0.0;              ///< s, reached
+  nlohmann::ordered_json gauges;  ///< the last ones, by their names in run.json
 };
 
 /// Fills the scene's case, runs it, gauges it while it runs and leaves a run directory.

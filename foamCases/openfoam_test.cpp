@@ -83,7 +83,9 @@ TEST_F(OpenFoam, TheInitialVolumeIsExactOnAnyGrid) {
 }
 
 TEST_F(OpenFoam, RunsEveryLawItAcceptsOnBothWalls) {
-  for (const char* model : {"papanastasiou", "bi-viscous", "newtonian"}) {
+  std::vector<const char*> models{"papanastasiou", "bi-viscous", "newtonian"};
+  if (find_plug_in()) models.push_back("elasto-viscoplastic");
+  for (const char* model : models) {
     run(roussel_slump(model, {"foam.cell=0.03", "time.end=0.1", "walls.base=slip"}));
     EXPECT_EQ(outcome_.status, runs::Status::end_time) << model;
   }
@@ -134,9 +136,9 @@ class PlugIn : public OpenFoam {
 TEST_F(PlugIn, AgreesWithOpenFoamsOwnLaws) {
   for (const char* model : {"papanastasiou", "bi-viscous"}) {
     const auto spread = [&](const char* laws) {
-      const auto result =
-          run(roussel_slump(model, {"foam.cell=0.02", "time.end=0.3", "foam.max_time_step=0.002",
-                                    "foam.max_courant=10", std::string("foam.laws=") + laws}));
+      const auto result = run(roussel_slump(
+          model, {"foam.cell=0.02", "time.end=0.3", "foam.max_time_step=0.002", "foam.max_courant=10",
+                  "foam.strain_rate=mixture", "foam.wetting=fraction", std::string("foam.laws=") + laws}));
       EXPECT_EQ(result.info["laws"], laws);
       return result.history.at("spread_mm").back();
     };

@@ -1,11 +1,11 @@
 #include "foamCases/slump_sampler.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
-#include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
 #include "runs/depth.h"
 
@@ -13,66 +13,35 @@ namespace flowrest::foam {
 
 namespace fs = std::filesystem;
 
-std::vector<std::pair<double, fs::path>> time_directories(const fs::path& case_directory) {
-  std::vector<std::pair<double, fs::path>> found;
-  for (const auto& entry : fs::directory_iterator(case_directory)) {
-    const std::string name = entry.path().filename().string();
-    double time = 0.0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), time);
-    if (error == std::errc{} && end == name.data() + name.size() && entry.is_directory())
-      found.emplace_back(time, entry.path());
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
+namespace {
+
+constexpr double rim_depth_bound = 3e-3;  // m, the depth at which the spread is read
+constexpr double volume_bound = 0.1;      // relative; a bounded phase fraction keeps the volume to 1e-6
+
+}  // namespace
 
 SlumpSampler::SlumpSampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
-    : scene_(scene), grid_(wedge_grid(scene)), case_directory_(std::move(case_directory)), writer_(writer) {
+    : Sampler(scene, std::move(case_directory), writer), grid_(wedge_grid(scene)) {
   std::vector<std::string> columns{
       "time_s",      "spread_mm",   "spread_1p5_mm",    "spread_6_mm",        "front_mm",
       "height_mm",   "volume_m3",   "kinetic_energy_J", "shear_rate_p99_1_s", "initial_residual_U",
       "courant_max", "time_step_s", "trapped_air_m3"};
-  if (scene_.thixotropy) columns.push_back("flocculation_mean");
-  writer_.history_columns(columns);
-}
-
-void SlumpSampler::note(const SolverStep& step) { steps_.push_back(step); }
-
-/// The largest residual and Courant number, and the last step, since the last row.
-SolverStep SlumpSampler::since_last_row(double time) {
-  SolverStep all;
-  // A directory's name is its time to 8 digits only; half a step tells it from its neighbours.
-  while (!steps_.empty() && steps_.front().time < time + 0.5 * steps_.front().time_step) {
-    const SolverStep& step = steps_.front();
-    all.initial_residual_u = std::max(all.initial_residual_u, step.initial_residual_u);
-    all.courant = std::max(all.courant, step.courant);
-    all.time_step = step.time_step;
-    steps_.pop_front();
-  }
-  return all;
-}
-
-void SlumpSampler::sample_before(double complete_before) {
-  for (const auto& [time, directory] : time_directories(case_directory_)) {
-    if (time >= complete_before) return;
-    if (last_sampled_ && time <= *last_sampled_) continue;
-    last_sampled_ = time;
-    sample(time, directory);
-    if (time > 0.0 && !fs::exists(directory / "p_rgh")) fs::remove_all(directory);
-  }
+  if (scene.thixotropy) columns.push_back("flocculation_mean");
+  writer.history_columns(columns);
 }
 
 void SlumpSampler::sample(double time, const fs::path& directory) {
   const SlumpFields fields{read_internal_field(directory / "alpha.concrete", grid_.cells(), 1),
                            read_internal_field(directory / "U", grid_.cells(), 3)};
-  if (scene_.thixotropy) {
+  if (scene().thixotropy) {
     // At the start the solver has not yet written the field: it is what the scene says.
     const auto flocculation =
         time > 0.0 ? read_internal_field(directory / "flocculation", grid_.cells(), 1)
-                   : std::vector<double>(grid_.cells(), scene_.thixotropy->initial_flocculation);
+                   : std::vector<double>(grid_.cells(), scene().thixotropy->initial_flocculation);
     state_.flocculation = mean_over_concrete(grid_, fields.fraction, flocculation);
   }
-  const auto gauges = gauge_slump(grid_, fields, scene_.material.density, scene_.base == scenes::Wall::slip);
+  const auto gauges =
+      gauge_slump(grid_, fields, scene().material.density, scene().base == scenes::Wall::slip);
   if (time == 0.0) state_.first_volume = gauges.volume;
   state_.time = time;
   state_.spread = runs::spread(gauges.radius, gauges.depth);
@@ -81,10 +50,8 @@ void SlumpSampler::sample(double time, const fs::path& directory) {
   state_.volume = gauges.volume;
   state_.rim_depth = gauges.rim_depth;
   state_.volume_error = std::max(state_.volume_error, std::abs(gauges.volume / state_.first_volume - 1.0));
-  const bool at_end = time > scene_.time.end - largest_time_step(scene_);
-  if (is_due(time, scene_.output.history_interval, next_history_) || at_end) write_history(time, gauges);
-  if (is_due(time, scene_.output.profile_interval, next_profile_) || at_end)
-    writer_.profile(time, gauges.radius, gauges.depth);
+  if (history_is_due(time)) write_history(time, gauges);
+  if (profile_is_due(time)) writer().profile(time, gauges.radius, gauges.depth);
 }
 
 void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
@@ -105,17 +72,30 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
                           steps.courant,
                           steps.time_step,
                           gauges.trapped_air};
-  if (scene_.thixotropy) row.push_back(state_.flocculation);
-  writer_.history(row);
+  if (scene().thixotropy) row.push_back(state_.flocculation);
+  writer().history(row);
 }
 
-/// interFoam samples at the first step past half a step before each multiple, so a sample may come a little
-/// early.
-bool SlumpSampler::is_due(double time, double interval, double& next) const {
-  const double early = 0.51 * std::min(largest_time_step(scene_), sample_interval(scene_));
-  if (time + early < next) return false;
-  next = (std::floor((time + early) / interval) + 1.0) * interval;
-  return true;
+std::string SlumpSampler::progress() const { return fmt::format("spread {:.1f} mm", 1e3 * state_.spread); }
+
+std::string SlumpSampler::fault() const {
+  if (state_.rim_depth > rim_depth_bound)
+    return fmt::format(
+        "the concrete reached the rim of the mesh at {:.4g} s: geometry.domain_radius = {:g} m must be "
+        "larger",
+        state_.time, scene().slump().domain_radius);
+  if (!(state_.volume_error < volume_bound))
+    return fmt::format("the volume of concrete is off by {:.0f} % at {:.4g} s: the flow diverges",
+                       100.0 * state_.volume_error, state_.time);
+  return "";
+}
+
+nlohmann::ordered_json SlumpSampler::summary() const {
+  return {{"spread_mm", 1e3 * state_.spread},
+          {"front_mm", 1e3 * state_.front},
+          {"height_mm", 1e3 * state_.height},
+          {"initial_volume_error", state_.first_volume / scene().slump().volume() - 1.0},
+          {"volume_error", state_.volume_error}};
 }
 
 }  // namespace flowrest::foam

@@ -142,21 +142,14 @@ void check_models(const Case& c) {
 void check_foam_runs(const Case& c) {
   const std::vector<Model>& models = c.scene().runs.foam;
   if (!c.usable({"runs.foam"}) || models.empty()) return;
-  if (c.scene().kind == Kind::duct) {
-    c.fault("runs.foam",
-            "runs.foam is given, but there is no OpenFOAM case of a duct yet; allowed: runs.mpm, runs.exact");
-  }
-  if (std::find(models.begin(), models.end(), Model::elasto_viscoplastic) != models.end()) {
-    c.fault(
-        "runs.foam",
-        "runs.foam names elasto-viscoplastic, which is not built for OpenFOAM yet; allowed: papanastasiou, "
-        "bi-viscous, newtonian");
-  }
-  if (c.usable({"material.plastic_viscosity"}) && c.scene().material.plastic_viscosity == 0.0) {
+  const bool fluids = std::any_of(models.begin(), models.end(),
+                                  [](Model model) { return model != Model::elasto_viscoplastic; });
+  if (fluids && c.usable({"material.plastic_viscosity", "foam.max_time_step"}) &&
+      c.scene().material.plastic_viscosity == 0.0 && !c.scene().foam.max_time_step) {
     c.fault("material.plastic_viscosity",
-            "material.plastic_viscosity is 0, on which the step of an OpenFOAM run depends; allowed: greater "
-            "than 0 "
-            "where runs.foam names a run");
+            "material.plastic_viscosity is 0, on which the step of a fluid in OpenFOAM depends; allowed: "
+            "greater than 0 "
+            "or foam.max_time_step where runs.foam names a fluid");
   }
 }
 

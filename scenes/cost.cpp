@@ -39,13 +39,15 @@ Cost mpm_cost(const Scene& scene) {
 }
 
 FoamEstimate estimate_foam(const Scene& scene) {
-  const SlumpGeometry& shape = scene.slump();
   const double cell = scene.foam.cell;
-  const Material& material = scene.material;
   FoamEstimate estimate;
-  estimate.cells = std::ceil(shape.domain_radius / cell) * std::ceil(shape.domain_height / cell);
-  estimate.step =
-      scene.foam.max_time_step.value_or(cell * cell * material.density / material.plastic_viscosity);
+  if (scene.kind == Kind::duct) {
+    estimate.cells = std::round(scene.duct().height / cell);
+  } else {
+    const SlumpGeometry& shape = scene.slump();
+    estimate.cells = std::ceil(shape.domain_radius / cell) * std::ceil(shape.domain_height / cell);
+  }
+  estimate.step = largest_foam_step(scene);
   estimate.steps = std::max(1.0, std::ceil(scene.time.end / estimate.step));
   estimate.cost.memory = bytes_of_interfoam + bytes_per_mesh_cell * estimate.cells;
   estimate.cost.cpu_seconds = estimate.cells * estimate.steps / cell_steps_per_cpu_second;

@@ -74,6 +74,12 @@ const NameTable<FoamStrainRate>& names_of(FoamStrainRate) {
   return table;
 }
 
+const NameTable<FoamWetting>& names_of(FoamWetting) {
+  static const NameTable<FoamWetting> table = {{FoamWetting::fraction, "fraction"},
+                                               {FoamWetting::geometric, "geometric"}};
+  return table;
+}
+
 namespace {
 
 template <class Choice>
@@ -97,6 +103,7 @@ std::string to_string(Wall choice) { return name_of(choice); }
 std::string to_string(FoamLaws choice) { return name_of(choice); }
 std::string to_string(FoamMixing choice) { return name_of(choice); }
 std::string to_string(FoamStrainRate choice) { return name_of(choice); }
+std::string to_string(FoamWetting choice) { return name_of(choice); }
 
 Model model_from_name(const std::string& name) {
   if (const auto model = choice_named<Model>(name)) return *model;

@@ -23,6 +23,7 @@ const NameTable<Wall>& names_of(Wall);
 const NameTable<FoamLaws>& names_of(FoamLaws);
 const NameTable<FoamMixing>& names_of(FoamMixing);
 const NameTable<FoamStrainRate>& names_of(FoamStrainRate);
+const NameTable<FoamWetting>& names_of(FoamWetting);
 
 /// Every name of a choice.
 template <class Choice>

@@ -29,6 +29,8 @@ enum class FoamLaws { best, plug_in, built_in };
 enum class FoamMixing { arithmetic, harmonic, mass_weighted, saturating };
 /// Whose shear rate the law is given in such a cell (plug-in only).
 enum class FoamStrainRate { mixture, concrete };
+/// How much of a wall holds the concrete of a cell that it does not fill (plug-in only).
+enum class FoamWetting { fraction, geometric };
 
 /// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Kind);
@@ -42,6 +44,7 @@ std::string to_string(Wall);
 std::string to_string(FoamLaws);
 std::string to_string(FoamMixing);
 std::string to_string(FoamStrainRate);
+std::string to_string(FoamWetting);
 
 /// A cone of material released on a plate; the axis of symmetry is vertical.
 struct SlumpGeometry {
@@ -146,7 +149,8 @@ struct Foam {
   FoamLaws laws = FoamLaws::best;
   FoamMixing mixing = FoamMixing::arithmetic;
   double full_at = 0.5;  ///< of `saturating`: the fraction of concrete from which its stress counts in full
-  FoamStrainRate strain_rate = FoamStrainRate::mixture;
+  FoamWetting wetting = FoamWetting::geometric;
+  FoamStrainRate strain_rate = FoamStrainRate::concrete;
   bool operator==(const Foam&) const = default;
 };
 

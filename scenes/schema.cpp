@@ -210,6 +210,8 @@ std::vector<Key> foam_keys() {
              "how the stresses of concrete and air mix in a cell (plug-in)"),
       number("foam.full_at", "", from(1e-6, 1.0), AT(draft.scene.foam.full_at),
              "fraction of concrete from which its stress counts in full, of the mixing `saturating`"),
+      choice("foam.wetting", AT(draft.scene.foam.wetting),
+             "how much of a wall holds the concrete of a cell it does not fill (plug-in)"),
       choice("foam.strain_rate", AT(draft.scene.foam.strain_rate),
              "whose shear rate the law takes in cells with air (plug-in)"),
   };

@@ -312,15 +312,9 @@ const Wrong wrong_scenes[] = {
     {"ThixotropyWithoutYieldStress", thixotropic_text, "yield_stress = 50", "yield_stress = 0",
      "wrong.toml:14:16: the yield stress is 0, but flocculation grows at flocculation_rate / yield_stress; "
      "allowed: a yield stress greater than 0 in scenes"},
-    {"SolidInOpenFoam", slump_text, "foam = [\"papanastasiou\"]", "foam = [\"elasto-viscoplastic\"]",
-     "wrong.toml:3:48: runs.foam names elasto-viscoplastic, which is not built for OpenFOAM yet; allowed: "
-     "papanastasiou, bi-viscous, newtonian"},
     {"InviscidInOpenFoam", slump_text, "plastic_viscosity = 50.0", "plastic_viscosity = 0",
-     "wrong.toml:15:21: material.plastic_viscosity is 0, on which the step of an OpenFOAM run depends; "
-     "allowed: greater than 0 where runs.foam names a run"},
-    {"DuctInOpenFoam", duct_text, "kind = \"duct\"", "kind = \"duct\"\nruns.foam = [\"newtonian\"]",
-     "wrong.toml:3:13: runs.foam is given, but there is no OpenFOAM case of a duct yet; allowed: runs.mpm, "
-     "runs.exact"},
+     "wrong.toml:15:21: material.plastic_viscosity is 0, on which the step of a fluid in OpenFOAM depends; "
+     "allowed: greater than 0 or foam.max_time_step where runs.foam names a fluid"},
     {"StepPastTheAcousticLimit", slump_text, "cfl = 0.75", "time_step = 0.0013",
      "wrong.toml:36:13: mpm.time_step of 0.0013 s is past the acoustic limit of 0.00120022 s (1.15 cell / c, "
      "with cell = 0.01 m and c = 9.5816 m/s under"},

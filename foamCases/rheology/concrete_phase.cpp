@@ -1,9 +1,11 @@
 #include "foamCases/rheology/concrete_phase.h"
 
 #include "Enum.H"
+#include "foamCases/rheology/wetting.h"
 #include "fvcFlux.H"
 #include "gaussGrad.H"
 #include "surfaceInterpolate.H"
+#include "wallFvPatch.H"
 
 namespace flowrest::rheology {
 
@@ -24,6 +26,11 @@ const Enum<Mixing>& mixing_names() {
   return names;
 }
 
+const Enum<Wetting>& wetting_names() {
+  static const Enum<Wetting> names{{Wetting::fraction, "fraction"}, {Wetting::geometric, "geometric"}};
+  return names;
+}
+
 /// Pa s
 const dimensionedScalar none("none", dimDynamicViscosity, 0.0);
 
@@ -38,6 +45,7 @@ PhaseRules PhaseRules::read(const dictionary& dict) {
     FatalIOErrorInFunction(dict) << "fullAt is " << rules.full_at
                                  << "; it must be a volume fraction above 0 and at most 1"
                                  << exit(FatalIOError);
+  rules.wetting = wetting_names().getOrDefault("wetting", dict, rules.wetting);
   return rules;
 }
 
@@ -113,9 +121,8 @@ tmp<volScalarField> ConcretePhase::other_viscosity() const {
                             : mixture->rho1() * mixture->nuModel1().nu();
 }
 
-tmp<volScalarField> ConcretePhase::weight(const PhaseRules& rules) const {
+tmp<volScalarField> ConcretePhase::cell_weight(const PhaseRules& rules) const {
   const auto alpha = fraction();
-  if (alone()) return alpha;
   if (rules.mixing == Mixing::saturating) return min(alpha / rules.full_at, scalar(1));
   if (rules.mixing == Mixing::mass_weighted) {
     const auto* mixture = find_mixture();
@@ -125,18 +132,42 @@ tmp<volScalarField> ConcretePhase::weight(const PhaseRules& rules) const {
   return alpha;
 }
 
+void ConcretePhase::wet_walls(volScalarField& share) const {
+  const auto alpha = fraction();
+  const auto gradient = fv::gaussGrad<scalar>::gradf(fvc::interpolate(alpha()), "grad(alpha)");
+  forAll(share.boundaryField(), p) {
+    const fvPatch& wall = mesh().boundary()[p];
+    if (!isA<wallFvPatch>(wall)) continue;
+    const vectorField normal(wall.nf());
+    auto& shares = share.boundaryFieldRef()[p];
+    forAll(shares, face) {
+      const label cell = wall.faceCells()[face];
+      const vector& slope = gradient().primitiveField()[cell];
+      const scalar towards = slope & normal[face];
+      shares[face] =
+          wetted_share(alpha().primitiveField()[cell], towards, mag(slope - towards * normal[face]));
+    }
+  }
+}
+
+tmp<volScalarField> ConcretePhase::weight(const PhaseRules& rules) const {
+  if (alone()) return fraction();
+  tmp<volScalarField> share = cell_weight(rules);
+  if (rules.wetting == Wetting::geometric) wet_walls(share.ref());
+  return share;
+}
+
 tmp<volScalarField> ConcretePhase::mixture_input(const PhaseRules& rules,
                                                  const volScalarField& viscosity) const {
-  if (alone() || rules.mixing == Mixing::arithmetic) return viscosity / density_;
-  const auto amount_here = amount();
+  if (alone() || (rules.mixing == Mixing::arithmetic && rules.wetting == Wetting::fraction))
+    return viscosity / density_;
   const auto alpha = fraction();
   const auto air = other_viscosity();
-  if (rules.mixing == Mixing::harmonic) {
-    const auto mixed = 1.0 / (alpha() / viscosity + (1.0 - alpha()) / air());
-    return max(mixed - (1.0 - alpha()) * air(), none) / (amount_here * density_);
-  }
-  const auto share = weight(rules);
-  return max(share() * viscosity + (alpha() - share()) * air(), none) / (amount_here * density_);
+  const auto mixed = rules.mixing == Mixing::harmonic
+                         ? 1.0 / (alpha() / viscosity + (1.0 - alpha()) / air())
+                         : weight(rules) * viscosity + (1.0 - weight(rules)) * air();
+  // The mixture adds the air's part by volume.
+  return max(mixed - (1.0 - alpha()) * air(), none) / (max(fraction(), dimensionedScalar(trace)) * density_);
 }
 
 template <class Type>

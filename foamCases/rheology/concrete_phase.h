@@ -21,12 +21,20 @@ enum class Mixing {
   saturating      ///< by min(alpha / fullAt, 1): full stress from the fraction `fullAt` on
 };
 
+/// How much of a wall the concrete in a cell is held by.
+enum class Wetting {
+  fraction,  ///< as much of it as the cell holds concrete, as OpenFOAM has it
+  geometric  ///< as much as a straight surface in the cell leaves wetted (wetted_share)
+};
+
 /// How a law meets the cells of a mixture; keywords `strainRate` (mixture | concrete), `mixing` (arithmetic |
-/// harmonic | massWeighted | saturating) and `fullAt` (0.5 unless given).
+/// harmonic | massWeighted | saturating), `fullAt` (0.5 unless given)
+/// and `wetting` (fraction | geometric).
 struct PhaseRules {
   StrainRate strain_rate = StrainRate::mixture;
   Mixing mixing = Mixing::arithmetic;
   double full_at = 0.5;
+  Wetting wetting = Wetting::fraction;
 
   /// Ends the program with the allowed words where one is not known.
   static PhaseRules read(const Foam::dictionary&);
@@ -65,7 +73,8 @@ class ConcretePhase {
   /// Dynamic viscosity of the other phase, Pa s; 0 where there is none.
   Foam::tmp<Foam::volScalarField> other_viscosity() const;
 
-  /// Share of concrete's stress in a cell's, by the rule; not for harmonic, which mixes viscosities.
+  /// Share of concrete's stress in a cell's, and on the walls, by the rules; not for harmonic, which mixes
+  /// viscosities.
   Foam::tmp<Foam::volScalarField> weight(const PhaseRules&) const;
 
   /// The kinematic viscosity to be given to OpenFOAM's mixture, which mixes by volume, so that the mixture's
@@ -80,6 +89,8 @@ class ConcretePhase {
 
  private:
   const Foam::volScalarField* find_fraction() const;
+  Foam::tmp<Foam::volScalarField> cell_weight(const PhaseRules&) const;
+  void wet_walls(Foam::volScalarField& share) const;
   const Foam::incompressibleTwoPhaseMixture* find_mixture() const;
   bool is_first(const Foam::incompressibleTwoPhaseMixture&) const;
 

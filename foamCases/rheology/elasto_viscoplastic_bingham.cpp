@@ -1,0 +1,222 @@
+#include "foamCases/rheology/elasto_viscoplastic_bingham.h"
+
+#include "addToRunTimeSelectionTable.H"
+#include "basicSymmetryFvPatchFields.H"
+#include "fvcSurfaceIntegrate.H"
+#include "fvmLaplacian.H"
+#include "zeroGradientFvPatchFields.H"
+
+namespace Foam {
+namespace laminarModels {
+
+using incompressible::laminarModel;
+
+defineTypeNameAndDebug(elastoViscoplasticBingham, 0);
+addToRunTimeSelectionTable(laminarModel, elastoViscoplasticBingham, dictionary);
+
+namespace {
+
+/// A wall whose cell held less concrete than this has no memory of its own: it takes the cell's.
+constexpr scalar wetted = 1e-2;
+
+/// A face with a larger share of concrete lies inside the body.
+constexpr scalar inside = 0.99;
+
+/// R s R^T with R = (I - W dt/2)^-1 (I + W dt/2), W the spin: the stress turns rigidly, its invariants
+/// unchanged.
+symmTensor turned(const symmTensor& stress, const tensor& gradient, scalar dt) {
+  const tensor spin = 0.5 * dt * skew(gradient.T());  // OpenFOAM's gradient is d U_j / d x_i
+  const tensor rotation = inv(I - spin) & (I + spin);
+  return symm(rotation & stress & rotation.T());
+}
+
+scalar modulus(const dictionary& dict) {
+  const scalar young = dict.get<scalar>("youngsModulus"), poisson = dict.get<scalar>("poissonRatio");
+  if (!(young > 0.0) || !(poisson > -1.0 && poisson <= 0.5))
+    FatalIOErrorInFunction(dict) << "youngsModulus " << young << " and poissonRatio " << poisson
+                                 << "; they must be above 0, and above -1 and at most 0.5"
+                                 << exit(FatalIOError);
+  return young / (2.0 * (1.0 + poisson));
+}
+
+template <class Field>
+Field like(const word& name, const fvMesh& mesh, const typename Field::value_type& value,
+           const dimensionSet& dims, const word& patch_type,
+           IOobject::writeOption write = IOobject::NO_WRITE) {
+  return Field(IOobject(name, mesh.time().timeName(), mesh,
+                        write == IOobject::AUTO_WRITE ? IOobject::READ_IF_PRESENT : IOobject::NO_READ, write),
+               mesh, dimensioned<typename Field::value_type>(name, dims, value), patch_type);
+}
+
+const char* const calculated = "calculated";
+
+}  // namespace
+
+elastoViscoplasticBingham::elastoViscoplasticBingham(
+    const geometricOneField& alpha, const geometricOneField& rho, const volVectorField& velocity,
+    const surfaceScalarField& mass_flux, const surfaceScalarField& flux, const transportModel& transport,
+    const word& properties_name, const word& type)
+    : laminarModel(type, alpha, rho, velocity, mass_flux, flux, transport, properties_name),
+      phase_(velocity, flux, coeffDict_.getOrDefault<word>("phase", "concrete"),
+             dimensionedScalar("rho", dimDensity, coeffDict_)),
+      rules_(flowrest::rheology::PhaseRules::read(coeffDict_)),
+      harmonic_faces_(coeffDict_.getOrDefault<word>("faceWeight", "harmonic") == "harmonic"),
+      shear_modulus_("shearModulus", dimPressure, modulus(coeffDict_)),
+      stress_(like<volSymmTensorField>("stress", velocity.mesh(), Zero, dimPressure, calculated,
+                                       IOobject::AUTO_WRITE)),
+      plastic_rate_(like<volScalarField>("plasticShearRate", velocity.mesh(), 0.0, dimless / dimTime,
+                                         calculated, IOobject::AUTO_WRITE)),
+      carried_(like<volSymmTensorField>("carriedStress", velocity.mesh(), Zero, dimPressure,
+                                        zeroGradientFvPatchSymmTensorField::typeName)) {
+  if (rules_.mixing == flowrest::rheology::Mixing::harmonic)
+    FatalIOErrorInFunction(coeffDict_)
+        << "mixing harmonic mixes viscosities, which an elastic solid has none of; "
+        << "allowed: arithmetic, massWeighted, saturating" << exit(FatalIOError);
+  law_.yield_stress = coeffDict_.get<scalar>("yieldStress");
+  law_.plastic_viscosity = coeffDict_.get<scalar>("plasticViscosity");
+  if (const dictionary* thixotropy = coeffDict_.findDict("thixotropy")) {
+    flocculation_ = std::make_unique<flowrest::rheology::Flocculation>(
+        phase_, *thixotropy, dimensionedScalar("yieldStress", dimPressure, law_.yield_stress));
+    law_.flocculation_growth = flocculation_->growth().value();
+    law_.deflocculation = flocculation_->deflocculation();
+  }
+}
+
+/// Whether a patch bounds the material: not a wedge, a periodic side or a face to another subdomain.
+bool elastoViscoplasticBingham::has_wall(label patch) const {
+  return isA<zeroGradientFvPatchSymmTensorField>(carried_.boundaryField()[patch]);
+}
+
+void elastoViscoplasticBingham::carry() const {
+  carried_.primitiveFieldRef() = stress_.primitiveField();
+  const volSymmTensorField old(carried_);
+  flowrest::rheology::carry_with_concrete(phase_, old, carried_);
+  if (flocculation_) flocculation_->carry();
+
+  const scalar dt = runTime_.deltaTValue();
+  const auto gradient = phase_.velocity_gradient(rules_.strain_rate);
+  const auto amount = phase_.old_amount();
+  PtrList<symmTensorField> walls(carried_.boundaryField().size());
+  forAll(walls, p) {
+    walls.set(p, new symmTensorField(carried_.boundaryField()[p]));
+    auto& wall = walls[p];
+    if (!has_wall(p)) continue;
+    // At rest the cell's stress does not change, and a wall's is its own.
+    const labelUList& cells = mesh_.boundary()[p].faceCells();
+    forAll(wall, face) {
+      const label cell = cells[face];
+      if (amount().primitiveField()[cell] < wetted)
+        wall[face] = carried_.primitiveField()[cell];
+      else
+        wall[face] =
+            stress_.boundaryField()[p][face] + carried_.primitiveField()[cell] - old.primitiveField()[cell];
+      wall[face] = turned(wall[face], gradient().boundaryField()[p][face], dt);
+    }
+  }
+  auto& cells = carried_.primitiveFieldRef();
+  forAll(cells, i) cells[i] = turned(cells[i], gradient().primitiveField()[i], dt);
+  carried_.correctBoundaryConditions();  // wedges and other subdomains
+  forAll(walls, p) {
+    if (has_wall(p)) carried_.boundaryFieldRef()[p] == walls[p];
+  }
+}
+
+elastoViscoplasticBingham::Response elastoViscoplasticBingham::respond(const volTensorField& gradient) const {
+  const scalar dt = runTime_.deltaTValue(), shear = shear_modulus_.value() * dt;
+  Response response{like<volSymmTensorField>("responseStress", mesh_, Zero, dimPressure, calculated),
+                    like<volScalarField>("responseRate", mesh_, 0.0, dimless / dimTime, calculated),
+                    like<volScalarField>("responseViscosity", mesh_, 0.0, dimDynamicViscosity, calculated),
+                    like<volScalarField>("responseFlocculation", mesh_, 0.0, dimless, calculated)};
+  const auto fill = [&](const symmTensorField& carried, const tensorField& gradients,
+                        const scalarField* flocculations, symmTensorField& stress, scalarField& rate,
+                        scalarField& viscosity, scalarField& flocculation) {
+    forAll(stress, i) {
+      const symmTensor trial = carried[i] + 2.0 * shear * dev(symm(gradients[i]));  // Yu et al. 2026, Eq. 37
+      const scalar tau = std::sqrt(0.5) * mag(trial);
+      const auto relaxed =
+          flowrest::rheology::relax(law_, tau, shear, dt, flocculations ? (*flocculations)[i] : 0.0);
+      const scalar kept = tau > VSMALL ? relaxed.stress / tau : 1.0;
+      stress[i] = kept * trial;
+      rate[i] = relaxed.rate;
+      viscosity[i] = kept * shear;
+      flocculation[i] = relaxed.flocculation;
+    }
+  };
+  const auto* flocculation = flocculation_ ? &flocculation_->field() : nullptr;
+  fill(carried_.primitiveField(), gradient.primitiveField(),
+       flocculation ? &flocculation->primitiveField() : nullptr, response.stress.primitiveFieldRef(),
+       response.rate.primitiveFieldRef(), response.viscosity.primitiveFieldRef(),
+       response.flocculation.primitiveFieldRef());
+  forAll(response.stress.boundaryField(), p) {
+    if (has_wall(p))
+      fill(carried_.boundaryField()[p], gradient.boundaryField()[p],
+           flocculation ? &static_cast<const scalarField&>(flocculation->boundaryField()[p]) : nullptr,
+           response.stress.boundaryFieldRef()[p], response.rate.boundaryFieldRef()[p],
+           response.viscosity.boundaryFieldRef()[p], response.flocculation.boundaryFieldRef()[p]);
+  }
+  response.stress.correctBoundaryConditions();
+  response.viscosity.correctBoundaryConditions();
+  return response;
+}
+
+/// Concrete pulls on a face only as far as there is concrete on both sides: on the one that bounds it, it
+/// does not.
+surfaceScalarField elastoViscoplasticBingham::face_weight() const {
+  const auto share = phase_.weight(rules_);
+  if (!harmonic_faces_) return surfaceScalarField("faceWeight", fvc::interpolate(share));
+  return surfaceScalarField("faceWeight", 1.0 / fvc::interpolate(1.0 / max(share, scalar(SMALL))));
+}
+
+tmp<fvVectorMatrix> elastoViscoplasticBingham::minus_divergence(volVectorField& velocity) const {
+  carry();
+  const auto gradient = phase_.velocity_gradient(rules_.strain_rate);
+  const Response response = respond(gradient());
+  const surfaceScalarField weight(face_weight());
+  const surfaceScalarField air(fvc::interpolate(phase_.other_viscosity()));
+  const surfaceTensorField face_gradient(phase_.interpolate(gradient()));
+  const surfaceSymmTensorField face_stress(phase_.interpolate(response.stress));
+  // The normal pull answers twice as stiffly as the shear; incompressibility takes that back inside the body,
+  // but not at its surface, where an implicit part for the shear alone would let it swing.
+  const surfaceScalarField stiffness(1.0 + pos(inside - weight));
+  const surfaceScalarField viscosity(
+      "stressViscosity", stiffness * weight * fvc::interpolate(response.viscosity) + (1.0 - weight) * air);
+  const surfaceVectorField& area = mesh_.Sf();
+  surfaceVectorField pull(weight * (area & face_stress));
+  forAll(pull.boundaryField(), p) {
+    if (!isA<basicSymmetryFvPatchVectorField>(velocity.boundaryField()[p])) continue;
+    const vectorField normal(mesh_.boundary()[p].nf());
+    pull.boundaryFieldRef()[p] =
+        normal * (normal & pull.boundaryField()[p]);  // a slip wall holds nothing back
+  }
+  pull += (area & ((1.0 - weight) * air * twoSymm(face_gradient) - viscosity * face_gradient));
+  return -fvc::surfaceIntegrate(pull) - fvm::laplacian(viscosity, velocity);
+}
+
+tmp<fvVectorMatrix> elastoViscoplasticBingham::divDevRhoReff(const volScalarField&,
+                                                             volVectorField& velocity) const {
+  return minus_divergence(velocity);
+}
+
+tmp<fvVectorMatrix> elastoViscoplasticBingham::divDevRhoReff(volVectorField& velocity) const {
+  return (1.0 / phase_.density()) * minus_divergence(velocity);
+}
+
+tmp<volSymmTensorField> elastoViscoplasticBingham::R() const { return -stress_ / phase_.density(); }
+
+tmp<volSymmTensorField> elastoViscoplasticBingham::devRhoReff() const {
+  return -phase_.weight(rules_) * stress_;
+}
+
+void elastoViscoplasticBingham::correct() {
+  laminarModel::correct();
+  const Response response = respond(phase_.velocity_gradient(rules_.strain_rate)());
+  stress_ == response.stress;
+  plastic_rate_ == response.rate;
+  if (flocculation_) {
+    flocculation_->field().primitiveFieldRef() = response.flocculation.primitiveField();
+    flocculation_->field().correctBoundaryConditions();
+  }
+}
+
+}  // namespace laminarModels
+}  // namespace Foam

@@ -1,0 +1,74 @@
+#include "foamCases/sampler.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "foamCases/case_filler.h"
+#include "scenes/step_limits.h"
+
+namespace flowrest::foam {
+
+namespace fs = std::filesystem;
+
+std::vector<std::pair<double, fs::path>> time_directories(const fs::path& case_directory) {
+  std::vector<std::pair<double, fs::path>> found;
+  for (const auto& entry : fs::directory_iterator(case_directory)) {
+    const std::string name = entry.path().filename().string();
+    double time = 0.0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), time);
+    if (error == std::errc{} && end == name.data() + name.size() && entry.is_directory())
+      found.emplace_back(time, entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Sampler::Sampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
+    : scene_(scene), case_directory_(std::move(case_directory)), writer_(writer) {}
+
+void Sampler::note(const SolverStep& step) { steps_.push_back(step); }
+
+SolverStep Sampler::since_last_row(double time) {
+  SolverStep all;
+  // A directory's name is its time to 8 digits only; half a step tells it from its neighbours.
+  while (!steps_.empty() && steps_.front().time < time + 0.5 * steps_.front().time_step) {
+    const SolverStep& step = steps_.front();
+    all.initial_residual_u = std::max(all.initial_residual_u, step.initial_residual_u);
+    all.courant = std::max(all.courant, step.courant);
+    all.time_step = step.time_step;
+    steps_.pop_front();
+  }
+  return all;
+}
+
+void Sampler::sample_before(double complete_before) {
+  for (const auto& [time, directory] : time_directories(case_directory_)) {
+    if (time >= complete_before) return;
+    if (last_sampled_ && time <= *last_sampled_) continue;
+    last_sampled_ = time;
+    sample(time, directory);
+    if (time > 0.0 && !fs::exists(directory / "p_rgh")) fs::remove_all(directory);
+  }
+}
+
+bool Sampler::history_is_due(double time) {
+  return is_due(time, scene_.output.history_interval, next_history_);
+}
+
+bool Sampler::profile_is_due(double time) {
+  return is_due(time, scene_.output.profile_interval, next_profile_);
+}
+
+/// interFoam samples at the first step past half a step before each multiple, so a sample may come a little
+/// early. The end is always due.
+bool Sampler::is_due(double time, double interval, double& next) const {
+  const double early = 0.51 * std::min(scenes::largest_foam_step(scene_), sample_interval(scene_));
+  const bool at_end = time > scene_.time.end - scenes::largest_foam_step(scene_);
+  if (time + early < next && !at_end) return false;
+  next = (std::floor((time + early) / interval) + 1.0) * interval;
+  return true;
+}
+
+}  // namespace flowrest::foam

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "foamCases/solver_log.h"
+#include "runs/run_directory.h"
+#include "scenes/scene.h"
+
+namespace flowrest::foam {
+
+/// Turns the time directories of a running case into rows of history.csv and profiles.csv, and removes those
+/// that were written for that only (a snapshot also holds p_rgh). What is gauged is a matter of the scene's
+/// kind.
+class Sampler {
+ public:
+  virtual ~Sampler() = default;
+
+  /// Counts a step: what the solver's log says of it goes into the next row at or after its time.
+  void note(const SolverStep&);
+
+  /// Samples, in their order, the time directories not yet sampled whose time is below `complete_before`.
+  /// @throws FieldError where one of them is not whole.
+  void sample_before(double complete_before);
+
+  /// s, of the last sample; 0 before the first
+  double time() const { return last_sampled_.value_or(0.0); }
+
+  virtual std::size_t cells() const = 0;
+  /// The state in a few words, for progress.
+  virtual std::string progress() const = 0;
+  /// Why the run can give no answer any more; empty where it can.
+  virtual std::string fault() const = 0;
+  /// The last gauges, for run.json.
+  virtual nlohmann::ordered_json summary() const = 0;
+
+ protected:
+  Sampler(const scenes::Scene&, std::filesystem::path case_directory, runs::RunWriter&);
+
+  virtual void sample(double time, const std::filesystem::path& directory) = 0;
+
+  const scenes::Scene& scene() const { return scene_; }
+  runs::RunWriter& writer() { return writer_; }
+  /// The largest residual and Courant number, and the last step, since the last row.
+  SolverStep since_last_row(double time);
+  bool history_is_due(double time);
+  bool profile_is_due(double time);
+
+ private:
+  bool is_due(double time, double interval, double& next) const;
+
+  const scenes::Scene& scene_;
+  std::filesystem::path case_directory_;
+  runs::RunWriter& writer_;
+  std::optional<double> last_sampled_;
+  double next_history_ = 0.0;
+  double next_profile_ = 0.0;
+  std::deque<SolverStep> steps_;  ///< not yet in a row
+};
+
+/// The time directories of a case in ascending order; other names are passed over.
+std::vector<std::pair<double, std::filesystem::path>> time_directories(
+    const std::filesystem::path& case_directory);
+
+}  // namespace flowrest::foam
