@@ -196,7 +196,8 @@ std::vector<Key> foam_keys() {
              "bound on the Courant number of flow and interface"),
       number("foam.max_time_step", "s", above(0.0, largest_time), AT(draft.scene.foam.max_time_step),
              "bound on the step")
-          .otherwise("cell^2 density / plastic_viscosity"),
+          .otherwise("cell^2 density / plastic_viscosity; elasto-viscoplastic: 1.5 cells at the speed of "
+                     "shear waves"),
       number("foam.air_density", "kg/m3", above(0.0, 1e6), AT(draft.scene.foam.air_density),
              "density of the air"),
       number("foam.air_kinematic_viscosity", "m2/s", above(0.0, 1e6),

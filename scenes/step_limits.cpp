@@ -119,14 +119,14 @@ MpmEstimate estimate_mpm(const Scene& scene) {
 
 double largest_foam_step(const Scene& scene) {
   if (scene.foam.max_time_step) return *scene.foam.max_time_step;
-  constexpr double waves_over_cells = 2.0;
+  constexpr double waves_over_cells = 1.5;
   const Material& material = scene.material;
   const double cell = scene.foam.cell;
   double step = std::min(scene.output.history_interval, scene.output.profile_interval);
+  if (material.model == Model::elasto_viscoplastic)
+    return std::min(step, waves_over_cells * cell / std::sqrt(material.shear_modulus() / material.density));
   if (material.plastic_viscosity > 0.0)
     step = std::min(step, cell * cell * material.density / material.plastic_viscosity);
-  if (material.model == Model::elasto_viscoplastic)
-    step = std::min(step, waves_over_cells * cell / std::sqrt(material.shear_modulus() / material.density));
   return step;
 }
 

@@ -19,8 +19,11 @@ namespace {
 /// A wall whose cell held less concrete than this has no memory of its own: it takes the cell's.
 constexpr scalar wetted = 1e-2;
 
-/// A face with a larger share of concrete lies inside the body.
-constexpr scalar inside = 0.99;
+/// The pull along a face's normal, and that of a swirl about an axis, answers with 2 G dt where shear answers
+/// with G dt; what is implicit must not be less, or they swing: at the surface, where incompressibility does
+/// not hold them, and on the axis. (With an implicit share b and a = G dt^2 k^2 / rho, the amplification is
+/// stable for all a only from b = 2.)
+constexpr scalar implicitness = 2.0;
 
 /// R s R^T with R = (I - W dt/2)^-1 (I + W dt/2), W the spin: the stress turns rigidly, its invariants
 /// unchanged.
@@ -175,11 +178,8 @@ tmp<fvVectorMatrix> elastoViscoplasticBingham::minus_divergence(volVectorField& 
   const surfaceScalarField air(fvc::interpolate(phase_.other_viscosity()));
   const surfaceTensorField face_gradient(phase_.interpolate(gradient()));
   const surfaceSymmTensorField face_stress(phase_.interpolate(response.stress));
-  // The normal pull answers twice as stiffly as the shear; incompressibility takes that back inside the body,
-  // but not at its surface, where an implicit part for the shear alone would let it swing.
-  const surfaceScalarField stiffness(1.0 + pos(inside - weight));
   const surfaceScalarField viscosity(
-      "stressViscosity", stiffness * weight * fvc::interpolate(response.viscosity) + (1.0 - weight) * air);
+      "stressViscosity", implicitness * weight * fvc::interpolate(response.viscosity) + (1.0 - weight) * air);
   const surfaceVectorField& area = mesh_.Sf();
   surfaceVectorField pull(weight * (area & face_stress));
   forAll(pull.boundaryField(), p) {

@@ -18,7 +18,7 @@ namespace laminarModels {
 /// on the walls, once the velocity of the step is known. The momentum equation takes it semi-implicitly: in
 /// the face's traction
 ///
-///   n.s(U) + mu n.grad(U_new) - mu n.grad(U),   mu = (tau / tau_trial) G dt,
+///   n.s(U) + mu n.grad(U_new) - mu n.grad(U),   mu = 2 (tau / tau_trial) G dt,
 ///
 /// s(U) is the law at the latest velocity, the second term implicit and compact, the third interpolated from
 /// cells. The two cancel as the velocity settles (so a state at rest is one of the law alone), make elastic

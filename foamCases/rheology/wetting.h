@@ -10,15 +10,15 @@ namespace flowrest::rheology {
 constexpr double dust = 0.01;
 
 /// Share of a wall that is wetted, in a square cell that concrete fills to the fraction `fraction`, its
-/// surface a straight line across `gradient`, the fraction's: `towards` the wall (positive where the concrete
+/// surface a straight line across the fraction's gradient: `towards` the wall (positive where the concrete
 /// lies on it) and `along` it, not negative, in any one unit. A thin layer touches the wall everywhere, a
-/// front as far as it has come, and concrete over a cushion of air nowhere. Without a gradient, `fraction`.
+/// front as far as it has come. Concrete over a cushion of air, which real air would leave, and a cell
+/// without a gradient take `fraction`.
 inline double wetted_share(double fraction, double towards, double along) {
   if (fraction <= 0.0) return 0.0;
   if (fraction >= 1.0) return 1.0;
-  if (towards < 0.0) return 1.0 - wetted_share(1.0 - fraction, -towards, along);
   const double sum = towards + along;
-  if (!(sum > 1e-12)) return fraction;
+  if (towards <= 0.0 || !(sum > 1e-12)) return fraction;
   // The surface is m1 x + m2 z = c over the unit square, z from the wall, m1 + m2 = 1; c follows from the
   // area below.
   const double m1 = along / sum, m2 = towards / sum;
