@@ -40,7 +40,9 @@ void make_trial(const StepParameters<T>& step, const Strain<T, Dim>& s, int coun
 #pragma omp simd
   for (int q = 0; q < count; ++q) {
     const VelocityGradient<T, Dim> l = gradient_of(s, q, Axisymmetric);
-    const T ratio = s.ratio[q] * (T(1) + dt * s.dilatation[q]);  // Yu et al. 2026, Eq. 30
+    const T dilatation = dt * s.dilatation[q];
+    // Yu et al. 2026, Eq. 30, to second order.
+    const T ratio = s.ratio[q] * (T(1) + dilatation + T(0.5) * dilatation * dilatation);
     const auto state = step.state.at(ratio);
     const Deviator<T, Dim> rate = l.strain_rate_deviator();
     Deviator<T, Dim> dev;

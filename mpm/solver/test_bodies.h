@@ -143,6 +143,40 @@ struct Open {
   int after_affine() const { return 2 * dimension + (affine_stored ? dimension * dimension : 0); }
 };
 
+struct Momenta {
+  std::array<double, 3> linear{};
+  double linear_scale = 0.0;  ///< sum of m |v|
+  std::array<double, 3> angular{};
+  double angular_scale = 0.0;
+};
+
+/// Linear momentum, and angular momentum about the origin with what APIC's affine velocities carry:
+/// sum of m h/4 (A_ji - A_ij), A the velocity differences over a cell (Jiang et al. 2015, section 5.3).
+inline Momenta momenta(Open& open) {
+  Momenta m;
+  for (std::size_t p = 0; p < open.size(); ++p) {
+    const double mass = open.mass()[p];
+    std::array<double, 3> x{}, v{};
+    for (int a = 0; a < open.dimension; ++a) {
+      x[static_cast<std::size_t>(a)] = open.position(a, p);
+      v[static_cast<std::size_t>(a)] = open.velocity(a)[p];
+    }
+    const auto affine = [&](int i, int j) {
+      return open.affine_stored && i < open.dimension && j < open.dimension ? open.affine(i, j)[p] : 0.0;
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      const int ib = static_cast<int>(b), ic = static_cast<int>(c);
+      m.linear[a] += mass * v[a];
+      m.angular[a] +=
+          mass * (x[b] * v[c] - x[c] * v[b]) + mass * open.cell / 4.0 * (affine(ic, ib) - affine(ib, ic));
+    }
+    m.linear_scale += mass * std::hypot(v[0], v[1], v[2]);
+    m.angular_scale += mass * std::hypot(x[0], x[1], x[2]) * std::hypot(v[0], v[1], v[2]);
+  }
+  return m;
+}
+
 /// The same solver with random stresses of about `size` Pa in it.
 inline std::unique_ptr<Solver> stressed(std::unique_ptr<Solver> solver, const SolverSettings& s,
                                         Random& random, double size) {

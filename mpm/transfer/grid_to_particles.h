@@ -34,6 +34,25 @@ void centroid_dilatation(const StepParameters<T>& step, const Tile<T, Dim>& tile
   }
 }
 
+/// Refers a step's velocity gradients to the body in the middle of the step, L (I + dt L / 2)^-1 to second
+/// order: a motion x + dt v stretches by dt L and by half its square, which turns a spinning body into a
+/// growing one unless the strain says so (Hughes and Winget 1980, Eq. 5).
+template <class T, int Dim, bool Axisymmetric>
+void refer_to_midpoint(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+  const T half = T(0.5) * step.step;
+#pragma omp simd
+  for (int q = 0; q < count; ++q) {
+    const VelocityGradient<T, Dim> l = gradient_of(s, q, Axisymmetric);
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        T square = T(0);
+        for (int k = 0; k < Dim; ++k) square += l.g[i][k] * l.g[k][j];
+        s.gradient[i][j][q] = l.g[i][j] - half * square;
+      }
+    if constexpr (Axisymmetric) s.hoop[q] = l.hoop - half * l.hoop * l.hoop;
+  }
+}
+
 /// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
@@ -58,6 +77,7 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     for (int q = 0; q < count; ++q)
       s.hoop[q] = radial_velocity[q] / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
   }
+  if (step.stress_rate == StressRate::hughes_winget) refer_to_midpoint<T, Dim, Axisymmetric>(step, s, count);
   if (step.dilatation == Dilatation::centroid) {
     centroid_dilatation<T, Dim, Axisymmetric, Shape>(step, tile, arena, radial, s.dilatation);
     return;
