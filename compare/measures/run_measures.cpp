@@ -1,0 +1,221 @@
+#include "compare/measures/run_measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/exact/creep.h"
+#include "compare/exact/solutions.h"
+#include "compare/run_view.h"
+#include "runs/depth.h"
+
+namespace flowrest::compare {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// (from time, force) in ascending time; empty where the run does not say.
+std::vector<std::pair<double, double>> body_force(const RunView& view) {
+  std::vector<std::pair<double, double>> stages;
+  const Json::json_pointer at("/settings/forces/body_force");
+  if (!view.run.info.contains(at)) return stages;
+  for (const Json& stage : view.run.info.at(at))
+    if (stage.is_array() && stage.size() == 2 && stage[0].is_number() && stage[1].is_number())
+      stages.emplace_back(stage[0].get<double>(), stage[1].get<double>());
+  return stages;
+}
+
+/// The regularised fluid a run computed, where it is one and says enough.
+std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
+  const auto yield_stress = setting(view, "/material/yield_stress");
+  const auto viscosity = setting(view, "/material/plastic_viscosity");
+  auto time = setting(view, "/material/regularisation_time");
+  exact::RegularisedFluid fluid;
+  if (view.model == "bi-viscous") {
+    fluid.law = exact::RegularisedFluid::Law::bi_viscous;
+    if (const auto rate = setting(view, "/material/critical_shear_rate"); rate && *rate > 0.0)
+      time = 1.0 / *rate;
+  } else if (view.model != "papanastasiou") {
+    return std::nullopt;
+  }
+  if (!yield_stress || !viscosity || !time) return std::nullopt;
+  fluid.yield_stress = *yield_stress;
+  fluid.plastic_viscosity = *viscosity;
+  fluid.regularisation_time = *time;
+  return fluid;
+}
+
+std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
+  if (!view.fluid) return 0.0;
+  const auto fluid = regularised_fluid(view);
+  if (!fluid) return std::nullopt;
+  if (kind == scenes::Kind::duct) {
+    const auto height = setting(view, "/geometry/height");
+    const auto stages = body_force(view);
+    if (!height || stages.empty() || stages.back().second * *height > 2.0 * fluid->yield_stress)
+      return std::nullopt;
+    return exact::duct_creep(*fluid, *height, stages.back().second);
+  }
+  const auto density = setting(view, "/material/density");
+  const auto gravity = setting(view, "/forces/gravity");
+  const auto top = setting(view, "/geometry/cone_radius_top");
+  const auto bottom = setting(view, "/geometry/cone_radius_bottom");
+  const auto height = setting(view, "/geometry/cone_height");
+  if (!density || !gravity || !top || !bottom || !height || !(fluid->yield_stress > 0.0) || !(*gravity > 0.0))
+    return std::nullopt;
+  if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
+  const scenes::SlumpGeometry cone{*height, *top, *bottom, 0.0, 0.0};
+  const auto slump = exact::leading_order_slump({*density, fluid->yield_stress, fluid->plastic_viscosity},
+                                                *gravity, cone.volume());
+  return exact::spread_creep(*fluid, slump.radius, slump.depth(0.5 * slump.radius),
+                             view.gauge.empty() ? slump.radius : 0.5 * view.gauge.value.back());
+}
+
+std::optional<double> drift(const Series& series) {
+  if (series.empty() || series.value.front() == 0.0) return std::nullopt;
+  return series.value.back() / series.value.front() - 1.0;
+}
+
+Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
+  const Measures& m = view.measures;
+  // A record that was cut off may have been cut off while it still flowed.
+  if (!m.residual || !view.trouble.empty()) return Cause::unknown;
+  const double speed = std::abs(*m.residual);
+  if (!view.fluid)
+    return speed <= rest_speed ? Cause::at_rest : view.held ? Cause::within_bound : Cause::approaching_rest;
+  const bool explained = m.predicted_creep && speed <= options.creep_factor * *m.predicted_creep;
+  if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
+  if (view.noisy) return Cause::noise;
+  return m.predicted_creep ? Cause::unexplained : Cause::unknown;
+}
+
+/// The run whose arrested spread overshoots are counted from: elasto-viscoplastic, the same solver if it can
+/// be, one that came to rest if there is one.
+const RunView* arrested_reference(const Comparison& comparison, const RunView& view) {
+  const RunView* best = nullptr;
+  int best_score = -1;
+  for (const RunView& other : comparison.runs) {
+    if (other.model != "elasto-viscoplastic" || other.exact || other.gauge.empty() || !other.trouble.empty())
+      continue;
+    const int score = 4 * (other.held || other.measures.cause == Cause::at_rest) +
+                      2 * (other.solver == view.solver) + !other.noisy;
+    if (score > best_score) {
+      best = &other;
+      best_score = score;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void measure(RunView& view, const Comparison& comparison) {
+  const Options& options = comparison.options;
+  const bool slump = comparison.kind == scenes::Kind::slump;
+  Measures& m = view.measures;
+  const Json& info = view.run.info;
+  if (!view.gauge.empty()) {
+    m.end = view.gauge.end();
+    m.gauge_end = view.gauge.value.back();
+  }
+  if (!view.run.profiles.empty()) {
+    const auto& last = view.run.profiles.back();
+    if (slump) {
+      m.spread_1_5mm = runs::spread(last.coordinate, last.value, 0.0015);
+      m.spread_6mm = runs::spread(last.coordinate, last.value, 0.006);
+      m.centre_depth = runs::centre_depth(last.coordinate, last.value);
+    }
+    m.end = std::max(m.end.value_or(last.time), last.time);
+  }
+  if (view.exact) {
+    m.predicted_creep = 0.0;
+    m.residual = 0.0;
+    m.cause = Cause::at_rest;
+    if (!slump) m.stopping_bound = number(info, "/stopping_time_bound_s");
+    return;
+  }
+  m.rest_declared = number(info, "/rest_time_s");
+  if (const auto growth = number(info, "/growth_to_come"); slump && !view.fluid && growth && m.gauge_end)
+    m.growth_to_come = *growth * *m.gauge_end;
+  m.cpu = number(info, "/cpu_s");
+  m.wall = number(info, "/wall_s");
+  if (m.cpu && m.end && *m.end > 0.0) m.cpu_per_simulated_second = *m.cpu / *m.end;
+  m.volume_drift = drift(column(view.run, "volume_m3"));
+  m.mass_drift = drift(column(view.run, "mass_kg"));
+  m.rest_by_shear_rate = settles_below(view.shear_rate, options.rest_shear_rate);
+  m.predicted_creep = predicted_creep(view, comparison.kind);
+  if (view.gauge.empty()) return;
+  const double end = view.gauge.end();
+  const auto last = trend(view.gauge, end - options.residual_window, end);
+  if (last) m.residual_scatter = last->scatter;
+  if (slump) {
+    const Series rate = rate_of_change(view.gauge, options.rate_window);
+    m.rest_by_spread_rate = settles_below(rate, options.rest_spread_rate);
+    // A cone takes a moment to start: rest before it has moved is not rest.
+    if (m.rest_by_spread_rate && *m.rest_by_spread_rate <= view.gauge.time.front())
+      m.rest_by_spread_rate.reset();
+    if (last) m.residual = last->slope;
+    m.cause = cause_of(view, options, options.still_speed);
+  } else {
+    const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
+    const double threshold = options.rest_velocity_fraction * largest;
+    double step = 0.0;
+    for (const auto& [from, force] : body_force(view))
+      if (from < end) step = from;
+    if (const auto settled = settles_below(view.gauge, threshold);
+        settled && *settled >= step && largest > 0.0)
+      m.stop_after_step = *settled - step;
+    Series window;
+    for (std::size_t i = 0; i < view.gauge.time.size(); ++i)
+      if (view.gauge.time[i] >= end - options.residual_window) window.value.push_back(view.gauge.value[i]);
+    std::nth_element(window.value.begin(),
+                     window.value.begin() + static_cast<std::ptrdiff_t>(window.value.size() / 2),
+                     window.value.end());
+    m.residual = window.value[window.value.size() / 2];
+    m.cause = cause_of(view, options, threshold);
+  }
+  for (const double stop : comparison.stops) {
+    const auto value = view.gauge_at(stop);
+    if (!value) continue;
+    m.stop_lowest = std::min(m.stop_lowest.value_or(*value), *value);
+    m.stop_highest = std::max(m.stop_highest.value_or(*value), *value);
+  }
+}
+
+void measure_overshoot(Comparison& comparison) {
+  if (comparison.kind != scenes::Kind::slump) return;
+  for (RunView& view : comparison.runs) {
+    if (view.exact) continue;
+    const RunView* reference = arrested_reference(comparison, view);
+    if (!reference) continue;
+    view.measures.overshoot_reference = reference->measures.gauge_end;
+    view.measures.overshoot_reference_run = reference->label;
+    for (const double time : comparison.options.overshoot_times)
+      if (const auto value = view.gauge_at(time))
+        view.measures.overshoot[time] = *value - *reference->measures.gauge_end;
+  }
+}
+
+std::string to_string(Cause cause) {
+  switch (cause) {
+    case Cause::at_rest:
+      return "at rest";
+    case Cause::within_bound:
+      return "little: at rest by the run's own bound on what is to come";
+    case Cause::approaching_rest:
+      return "still approaching rest";
+    case Cause::creep:
+      return "creep of the regularisation";
+    case Cause::creep_or_noise:
+      return "creep of the regularisation or noise, not told apart";
+    case Cause::noise:
+      return "noise";
+    case Cause::unexplained:
+      return "unexplained: more than the regularisation's creep";
+    case Cause::unknown:
+      return "unknown";
+  }
+  return "";
+}
+
+}  // namespace flowrest::compare

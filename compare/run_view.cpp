@@ -1,0 +1,238 @@
+#include "compare/run_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "runs/depth.h"
+
+namespace flowrest::compare {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double spread_threshold = 0.003;  // m
+
+/// The scene's gauge: from the history, or made of the profiles where the history lacks it.
+Series gauge_of(const runs::Run& run, scenes::Kind kind) {
+  Series series =
+      kind == scenes::Kind::slump ? column(run, "spread_mm", 1e-3) : column(run, "plug_velocity_m_s");
+  if (!series.empty()) return series;
+  for (const auto& profile : run.profiles) {
+    series.time.push_back(profile.time);
+    series.value.push_back(kind == scenes::Kind::slump
+                               ? runs::spread(profile.coordinate, profile.value, spread_threshold)
+                               : *std::max_element(profile.value.begin(), profile.value.end()));
+  }
+  return series;
+}
+
+/// Duct profiles are compared about the mid-plane; solvers may count y from the lower plate.
+void centre_duct_profiles(runs::Run& run) {
+  const auto height = number(run.info, "/settings/geometry/height");
+  for (auto& profile : run.profiles) {
+    if (!height || profile.coordinate.empty() || profile.coordinate.back() <= 0.51 * *height) continue;
+    for (double& y : profile.coordinate) y -= 0.5 * *height;
+  }
+}
+
+std::vector<double> on_grid(const runs::Profile& profile, const std::vector<double>& grid, bool radial) {
+  std::vector<double> values;
+  values.reserve(grid.size());
+  const auto& x = profile.coordinate;
+  for (const double g : grid) {
+    double value = 0.0;
+    if (x.empty() || g > x.back()) {
+      value = 0.0;
+    } else if (g >= x.front()) {
+      value = interpolate(x, profile.value, g);
+    } else if (radial && x.size() > 1) {
+      // Flat on the axis: the parabola in r^2 through the innermost two points.
+      value = profile.value[0] +
+              (profile.value[0] - profile.value[1]) * (x[0] * x[0] - g * g) / (x[1] * x[1] - x[0] * x[0]);
+    } else {
+      value = radial ? profile.value[0] : 0.0;
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+std::string trouble_of(const RunView& view) {
+  const std::string at =
+      view.gauge.empty() ? "before the first record" : fmt::format("at {:.3g} s", view.gauge.end());
+  const std::string reason = word(view.run.info, "/reason");
+  const std::string why = reason.empty() ? "" : ": " + reason;
+  switch (view.run.status()) {
+    case runs::Status::running:
+      return "still running, or killed, " + at + why;
+    case runs::Status::interrupted:
+      return "interrupted " + at + why;
+    case runs::Status::failed:
+      return "failed " + at + why;
+    case runs::Status::at_rest:
+    case runs::Status::end_time:
+      return "";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<double> number(const Json& json, const char* pointer) {
+  const Json::json_pointer at(pointer);
+  if (!json.contains(at) || !json.at(at).is_number()) return std::nullopt;
+  return json.at(at).get<double>();
+}
+
+std::string word(const Json& json, const char* pointer) {
+  const Json::json_pointer at(pointer);
+  return json.contains(at) && json.at(at).is_string() ? json.at(at).get<std::string>() : "";
+}
+
+std::optional<double> setting(const RunView& view, const std::string& key) {
+  return number(view.run.info, ("/settings" + key).c_str());
+}
+
+Series column(const runs::Run& run, const std::string& name, double scale) {
+  Series series;
+  if (!run.history.has(name)) return series;
+  const auto& time = run.history.at("time_s");
+  const auto& value = run.history.at(name);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (!std::isfinite(value[i]) || (!series.empty() && time[i] <= series.end())) continue;
+    series.time.push_back(time[i]);
+    series.value.push_back(scale * value[i]);
+  }
+  return series;
+}
+
+RunView view_of(runs::Run run, scenes::Kind kind) {
+  RunView view;
+  view.run = std::move(run);
+  const Json& info = view.run.info;
+  view.label = view.run.label();
+  view.solver = word(info, "/solver");
+  view.model = word(info, "/model");
+  view.exact = view.solver == "exact";
+  view.held = view.run.status() == runs::Status::at_rest;
+  view.fluid = view.model == "papanastasiou" || view.model == "bi-viscous" || view.model == "newtonian";
+  if (const std::string verdict = word(info, "/verdict"); verdict.starts_with("noisy")) {
+    view.noisy = true;
+    const auto colon = verdict.find(": ");
+    view.noise = colon == std::string::npos ? "no reason given" : verdict.substr(colon + 2);
+  }
+  if (kind == scenes::Kind::duct) centre_duct_profiles(view.run);
+  view.gauge = gauge_of(view.run, kind);
+  view.shear_rate = column(view.run, "shear_rate_p99_1_s");
+  view.trouble = trouble_of(view);
+  return view;
+}
+
+void make_labels_unique(std::vector<RunView>& views) {
+  const auto group_of = [&](const std::string& label) {
+    std::vector<RunView*> group;
+    for (RunView& view : views)
+      if (view.label == label) group.push_back(&view);
+    return group;
+  };
+  std::set<std::string> labels;
+  for (const RunView& view : views) labels.insert(view.label);
+  for (const std::string& label : labels) {
+    const auto group = group_of(label);
+    if (group.size() < 2) continue;
+    const auto distinguish = [&](auto text) {
+      std::set<std::string> texts;
+      for (const RunView* view : group) texts.insert(text(*view));
+      if (texts.size() < 2) return;
+      for (RunView* view : group)
+        if (const std::string part = text(*view); !part.empty()) view->label += ", " + part;
+    };
+    distinguish(
+        [](const RunView& v) { return v.solver == "mpm" ? word(v.run.info, "/settings/mpm/scheme") : ""; });
+    distinguish([](const RunView& v) { return word(v.run.info, "/settings/geometry/dimension"); });
+    distinguish([](const RunView& v) {
+      const auto m = setting(v, "/material/regularisation_time");
+      return m && v.fluid ? fmt::format("m = {:g} s", *m) : std::string();
+    });
+    distinguish([](const RunView& v) {
+      const auto cell = setting(v, "/" + v.solver + "/cell");
+      return cell ? fmt::format("{:g} mm cells", 1000.0 * *cell) : std::string();
+    });
+    std::set<std::string> seen;
+    for (RunView* view : group)
+      if (!seen.insert(view->label).second) {
+        view->label += ", " + view->run.directory.filename().string();
+        for (int i = 2; !seen.insert(view->label).second; ++i) view->label += fmt::format(" ({})", i);
+      }
+  }
+}
+
+void check_same_scene(Comparison& comparison) {
+  static const std::set<std::string> allowed = {
+      "/material/model",     "/material/regularisation_time", "/material/critical_shear_rate",
+      "/geometry/dimension", "/geometry/domain_radius",       "/geometry/domain_height"};
+  std::set<std::string> different;
+  const RunView& first = comparison.runs.front();
+  for (const RunView& view : comparison.runs) {
+    if (view.run.info["title"] != first.run.info["title"])
+      comparison.notes.push_back(fmt::format("{} is a run of the scene \"{}\".", view.label,
+                                             view.run.info["title"].get<std::string>()));
+    for (const char* section : {"geometry", "material", "walls", "forces", "thixotropy"}) {
+      const auto flat = [&](const RunView& v) {
+        const Json::json_pointer at(std::string("/settings/") + section);
+        return v.run.info.contains(at) ? v.run.info.at(at).flatten() : Json::object();
+      };
+      const Json a = flat(first), b = flat(view);
+      for (const auto* json : {&a, &b})
+        for (const auto& [key, value] : json->items()) {
+          const std::string name = std::string("/") + section + key;
+          if (allowed.contains(name)) continue;
+          if (!a.contains(key) || !b.contains(key) || a[key] != b[key]) different.insert(name.substr(1));
+        }
+    }
+  }
+  if (different.empty()) return;
+  std::string keys;
+  for (std::string key : different) {
+    std::replace(key.begin(), key.end(), '/', '.');
+    keys += (keys.empty() ? "" : ", ") + key;
+  }
+  comparison.notes.push_back("These runs are not of the same physical scene: they differ in " + keys + ".");
+}
+
+std::optional<double> RunView::gauge_at(double time) const {
+  if (gauge.empty()) return std::nullopt;
+  if (!exact && (time < gauge.time.front() - 1e-9 || (!held && time > gauge.end() + 1e-9)))
+    return std::nullopt;
+  if (exact && run.info["kind"] == "duct") {
+    // Each row is the steady state of the stage that ends there.
+    const auto row = std::lower_bound(gauge.time.begin(), gauge.time.end(), time - 1e-9);
+    return gauge.value[row == gauge.time.end() ? gauge.value.size() - 1
+                                               : static_cast<std::size_t>(row - gauge.time.begin())];
+  }
+  return gauge.at(time);
+}
+
+std::optional<std::vector<double>> RunView::profile(double time, const std::vector<double>& grid) const {
+  const auto& profiles = run.profiles;
+  const bool radial = run.info["kind"] == "slump";
+  if (profiles.empty()) return std::nullopt;
+  const auto after = std::lower_bound(profiles.begin(), profiles.end(), time - 1e-9,
+                                      [](const runs::Profile& p, double t) { return p.time < t; });
+  if (after == profiles.end())
+    return held || exact ? std::optional(on_grid(profiles.back(), grid, radial)) : std::nullopt;
+  if (exact || std::abs(after->time - time) <= 1e-9) return on_grid(*after, grid, radial);
+  if (after == profiles.begin()) return std::nullopt;
+  const auto before = after - 1;
+  auto values = on_grid(*before, grid, radial);
+  const auto later = on_grid(*after, grid, radial);
+  const double weight = (time - before->time) / (after->time - before->time);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * (later[i] - values[i]);
+  return values;
+}
+
+}  // namespace flowrest::compare

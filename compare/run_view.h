@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/comparison.h"
+
+/// A run made ready for comparison: read, named, with its gauge as a series.
+namespace flowrest::compare {
+
+/// Values of run.json by JSON pointer; empty where they are missing or of another type.
+std::optional<double> number(const nlohmann::ordered_json& json, const char* pointer);
+std::string word(const nlohmann::ordered_json& json, const char* pointer);
+/// A number among the run's resolved settings: setting(view, "/material/density").
+std::optional<double> setting(const RunView&, const std::string& key);
+
+/// A history column as a series, without samples that are not numbers.
+Series column(const runs::Run&, const std::string& name, double scale = 1.0);
+
+/// The run as the comparison sees it: named, with its gauge and its trouble.
+RunView view_of(runs::Run, scenes::Kind);
+
+/// Tells runs of the same solver and model apart by the settings in which they differ, else by their folders.
+void make_labels_unique(std::vector<RunView>&);
+
+/// Notes the physical settings in which the runs differ: a comparison of two scenes is not one of two
+/// solvers.
+void check_same_scene(Comparison&);
+
+}  // namespace flowrest::compare
