@@ -5,7 +5,7 @@
 #include <set>
 
 #include "compare/comparison.h"
-#include "compare/report/report.h"
+#include "compare/comparison_page.h"
 
 namespace flowrest::compare {
 
@@ -221,7 +221,7 @@ void write_comparison(const Comparison& comparison, const std::filesystem::path&
     throw runs::RunError(fmt::format("{}: is a run; name another folder for the report", report.string()));
   const Json json = to_json(comparison);
   // The page first: it is the one that may lack what it is made of.
-  const std::string page = report_page(comparison, json);
+  const std::string page = report::render(page_of(comparison, json));
   runs::write_atomically(report / "comparison.json",
                          json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
   runs::write_atomically(report / "measures.csv", measures_csv(json));

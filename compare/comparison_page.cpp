@@ -1,0 +1,527 @@
+#include "compare/comparison_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "compare/run_view.h"
+#include "compare/words.h"
+
+namespace flowrest::compare {
+
+using Json = nlohmann::ordered_json;
+using report::Axis;
+using report::Bars;
+using report::Block;
+using report::Chapter;
+using report::Column;
+using report::Curve;
+using report::Format;
+using report::none;
+using report::Plot;
+using report::Table;
+using report::Text;
+
+namespace {
+
+/// Samples of a history in the page: dense early, where most happens, and few enough to draw at once.
+constexpr int history_samples = 500;
+
+bool is_slump(const Comparison& comparison) { return comparison.kind == scenes::Kind::slump; }
+double scale_of(const Comparison& comparison) { return is_slump(comparison) ? 1e3 : 1.0; }
+std::string unit_of(const Comparison& comparison) { return is_slump(comparison) ? "mm" : "m/s"; }
+std::string gauge_name(const Comparison& comparison) {
+  return is_slump(comparison) ? "spread" : "plug velocity";
+}
+std::string speed_unit(const Comparison& comparison) { return is_slump(comparison) ? "mm/s" : "m/s"; }
+
+constexpr Format fixed(int digits) { return {Format::Kind::fixed, digits}; }
+constexpr Format signed_fixed(int digits) { return {Format::Kind::signed_fixed, digits}; }
+constexpr Format significant(int digits) { return {Format::Kind::significant, digits}; }
+
+/// Colour tells the law and dashes tell the solver, so that a figure shows by itself which difference is
+/// which; runs that agree in both are told apart by further dashes. Exact solutions are drawn in ink.
+std::vector<report::Entry> entries_of(const Comparison& comparison) {
+  std::vector<report::Entry> entries;
+  std::set<std::pair<int, int>> taken;
+  for (const RunView& view : comparison.runs) {
+    report::Entry entry{view.label, 0, 0, view.noisy ? view.noise : "", view.trouble};
+    entry.colour = view.exact                            ? -1
+                   : view.model == "elasto-viscoplastic" ? 0
+                   : view.model == "papanastasiou"       ? 1
+                   : view.model == "bi-viscous"          ? 2
+                   : view.model == "newtonian"           ? 3
+                                                         : 4;
+    entry.dash = view.exact ? 5 : view.solver == "mpm" ? 0 : view.solver == "foam" ? 1 : 2;
+    while (!taken.insert({entry.colour, entry.dash % 8}).second && taken.size() < 64) ++entry.dash;
+    entries.push_back(entry);
+  }
+  return entries;
+}
+
+std::vector<double> history_times(double from, double end) {
+  std::vector<double> times;
+  for (int i = 0; i <= history_samples; ++i) {
+    const double t = end * std::pow(static_cast<double>(i) / history_samples, 1.7);
+    if (t >= from) times.push_back(t);
+  }
+  return times;
+}
+
+Axis time_axis(const Comparison& comparison) {
+  return {"time", "s", false, true, std::nullopt, comparison.end};
+}
+
+Plot gauge_plot(const Comparison& comparison) {
+  const bool slump = is_slump(comparison);
+  Plot plot{slump ? "spread" : "velocity",
+            gauge_name(comparison) + " against time",
+            "",
+            time_axis(comparison),
+            {gauge_name(comparison), unit_of(comparison), false, true, std::nullopt, std::nullopt},
+            {},
+            true,
+            std::nullopt};
+  plot.caption =
+      slump
+          ? "Spread: twice the radius at which the depth falls through 3 mm. A thin dotted tail continues a "
+            "run that has come to rest."
+          : "Velocity of the plug. The exact line is the steady state of each stage of the force.";
+  double lowest_end = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    Curve curve{"", static_cast<int>(i), {}, {}};
+    for (const double t : history_times(0.0, comparison.end)) {
+      const auto value = view.gauge_at(t);
+      curve.x.push_back(t);
+      curve.y.push_back(value ? scale_of(comparison) * *value : none);
+    }
+    if (view.held && !view.exact && view.measures.end) curve.held_from = *view.measures.end;
+    if (view.measures.gauge_end) lowest_end = std::min(lowest_end, 1e3 * *view.measures.gauge_end);
+    plot.curves.push_back(std::move(curve));
+  }
+  // A slump's whole rise hides what matters: how its runs part at the end.
+  if (slump && std::isfinite(lowest_end)) plot.focus = 10.0 * std::floor(0.09 * lowest_end);
+  return plot;
+}
+
+std::optional<Block> profiles(const Comparison& comparison) {
+  const bool slump = is_slump(comparison);
+  report::Frames frames{"profiles", slump ? "depth profiles" : "velocity profiles"};
+  frames.caption =
+      slump ? "Depth: concrete volume per plan area, for every solver. Vertical scale exaggerated. Drag, use "
+              "the arrow keys, or press play."
+            : "Drag, use the arrow keys, or press play.";
+  frames.times = comparison.frames;
+  frames.grid = {slump ? (comparison.radial ? "radius" : "distance") : "height above the mid-plane", "mm"};
+  frames.value = {slump ? "depth" : "velocity", unit_of(comparison), false, false, 0.0, std::nullopt};
+  if (!slump) frames.value.from = std::nullopt;
+  for (const double x : comparison.grid) frames.coordinate.push_back(1e3 * x);
+  frames.upright = !slump;
+  bool any = false;
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    report::Frames::Curve curve{static_cast<int>(i), {}};
+    for (const double t : comparison.frames) {
+      auto values = comparison.runs[i].profile(t, comparison.grid).value_or(std::vector<double>());
+      for (double& v : values) v = slump ? std::round(1e5 * v) / 1e2 : v;
+      any = any || !values.empty();
+      curve.values.push_back(std::move(values));
+    }
+    frames.curves.push_back(std::move(curve));
+  }
+  if (!any || frames.times.empty() || frames.coordinate.empty()) return std::nullopt;
+  return frames;
+}
+
+/// A column of a table of runs.
+struct RunColumn {
+  Column column;
+  std::function<Table::Cell(const RunView&)> value;
+};
+
+Table::Cell cell(const std::optional<double>& value, double scale = 1.0) {
+  return value ? Table::Cell(scale * *value) : Table::Cell();
+}
+
+RunColumn measure_column(const std::string& name, const std::string& unit, Format format,
+                         std::optional<double> Measures::*member, double scale = 1.0) {
+  return {{name, unit, format}, [=](const RunView& view) { return cell(view.measures.*member, scale); }};
+}
+
+Table table_of_runs(const Comparison& comparison, const std::string& id, const std::string& title,
+                    const std::vector<RunColumn>& columns,
+                    const std::function<bool(const RunView&)>& wanted) {
+  Table table{id, title, "", {{"Run"}}, {}};
+  table.columns.front().text = true;
+  for (const RunColumn& column : columns) table.columns.push_back(column.column);
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    if (!wanted(view)) continue;
+    Table::Row row{{Table::Cell(view.label)}, static_cast<int>(i)};
+    for (const RunColumn& column : columns) row.cells.push_back(column.value(view));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table::Cell verdict(const RunView& view) {
+  if (view.exact) return "exact";
+  const std::string said = word(view.run.info, "/verdict");
+  return view.trouble.empty() ? said : view.trouble + (said.empty() ? "" : "; " + said);
+}
+
+std::string measures_caption(const Comparison& comparison) {
+  const Options& o = comparison.options;
+  if (!is_slump(comparison))
+    return fmt::format(
+        "A duct has stopped once its plug stays below {:g} % of its largest velocity. A dash: not measured, "
+        "or never.",
+        100.0 * o.rest_velocity_fraction);
+  std::set<std::string> references;
+  for (const RunView& view : comparison.runs)
+    if (!view.measures.overshoot_reference_run.empty())
+      references.insert(view.measures.overshoot_reference_run);
+  return fmt::format(
+      "A run is at rest by shear rate once the 99th percentile of the shear rate stays below {:g} 1/s, and "
+      "by spread rate "
+      "once the spread grows by less than {:g} mm/s over {:g} s, up to the end of its record. A dash: not "
+      "measured, or "
+      "never. These thresholds are customary, not criteria: a fluid that creeps for ever passes them too. "
+      "The volume of a "
+      "material point run includes its elastic compression. {}",
+      o.rest_shear_rate, 1e3 * o.rest_spread_rate, o.rate_window,
+      references.empty()
+          ? "No run of the elasto-viscoplastic law is among these, so there is no arrested spread to count "
+            "from."
+          : "Arrested spread: that of " + words::listed({references.begin(), references.end()}) + ".");
+}
+
+Table measures_table(const Comparison& comparison) {
+  std::vector<RunColumn> columns;
+  if (is_slump(comparison)) {
+    columns = {measure_column("Spread at the end", "mm", fixed(0), &Measures::gauge_end, 1e3),
+               measure_column("at 1.5 mm depth", "mm", fixed(0), &Measures::spread_1_5mm, 1e3),
+               measure_column("at 6 mm depth", "mm", fixed(0), &Measures::spread_6mm, 1e3),
+               measure_column("Centre", "mm", fixed(1), &Measures::centre_depth, 1e3),
+               {{"Recorded until", "s", fixed(0)},
+                [](const RunView& view) { return view.exact ? Table::Cell() : cell(view.measures.end); }},
+               measure_column("Rest, declared", "s", fixed(1), &Measures::rest_declared),
+               measure_column("Still to come, at most", "mm", fixed(1), &Measures::growth_to_come, 1e3),
+               measure_column("Rest by shear rate", "s", fixed(1), &Measures::rest_by_shear_rate),
+               measure_column("Rest by spread rate", "s", fixed(1), &Measures::rest_by_spread_rate)};
+    for (const double time : comparison.options.overshoot_times)
+      columns.push_back({{fmt::format("Past the arrested spread at {:g} s", time), "mm", signed_fixed(0)},
+                         [time](const RunView& view) {
+                           const auto at = view.measures.overshoot.find(time);
+                           return at == view.measures.overshoot.end() ? Table::Cell()
+                                                                      : Table::Cell(1e3 * at->second);
+                         }});
+  } else {
+    columns = {
+        measure_column("Plug velocity at the end", "m/s", significant(4), &Measures::gauge_end),
+        measure_column("Stops after the last change of force", "s", fixed(2), &Measures::stop_after_step),
+        measure_column("Exact bound", "s", fixed(2), &Measures::stopping_bound),
+        measure_column("Rest by shear rate", "s", fixed(2), &Measures::rest_by_shear_rate)};
+  }
+  columns.push_back(measure_column("Volume drift", "%", signed_fixed(3), &Measures::volume_drift, 100.0));
+  columns.push_back({{"Verdict", "", {}, true}, verdict});
+  Table table = table_of_runs(comparison, "measures", "measures of each run", columns,
+                              [](const RunView&) { return true; });
+  table.caption = measures_caption(comparison);
+  return table;
+}
+
+std::optional<Chapter> shear_chapter(const Comparison& comparison) {
+  Plot plot{"shear-rate",
+            "99th percentile of the shear rate",
+            fmt::format("Norm: sqrt(2 D:D). The customary threshold of rest is {:g} 1/s.",
+                        comparison.options.rest_shear_rate),
+            time_axis(comparison),
+            {"shear rate", "1/s", true, true, std::nullopt, std::nullopt},
+            {}};
+  plot.x.logarithmic = true;
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const Series& series = comparison.runs[i].shear_rate;
+    if (series.empty()) continue;
+    Curve curve{"", static_cast<int>(i), {}, {}};
+    for (const double t : history_times(series.time.front(), std::min(series.end(), comparison.end))) {
+      const double value = series.at(t);
+      if (!(t > 0.0) || !(value > 0.0)) continue;
+      curve.x.push_back(t);
+      curve.y.push_back(value);
+    }
+    if (!curve.x.empty()) plot.curves.push_back(std::move(curve));
+  }
+  if (plot.curves.empty()) return std::nullopt;
+  return Chapter{"rest", "How it comes to rest", {plot}};
+}
+
+std::string residual_caption(const Comparison& comparison) {
+  if (!is_slump(comparison))
+    return "Predicted: the steady velocity of the regularised law under the last force, from its flow curve.";
+  return fmt::format(
+      "Measured: the median slope of the spread over the last {:g} s. Predicted: on the arrested profile, "
+      "whose base carries "
+      "the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays "
+      "similar then grows in "
+      "diameter by 4 u. Past the arrested radius the base stress falls with its fifth power, and the creep "
+      "with it. A run of "
+      "a law that comes to rest has no predicted creep.",
+      comparison.options.residual_window);
+}
+
+std::optional<Chapter> residual_chapter(const Comparison& comparison) {
+  const double scale = scale_of(comparison);
+  const std::string unit = speed_unit(comparison);
+  const auto moving = [](const RunView& view) { return !view.exact && view.measures.residual.has_value(); };
+  Bars bars{"residual",
+            is_slump(comparison) ? "growth of the spread over the last seconds"
+                                 : "plug velocity over the last seconds",
+            residual_caption(comparison),
+            {"speed", unit, true},
+            {},
+            {{"measured", {}}, {"predicted by the regularisation", {}}}};
+  for (const RunView& view : comparison.runs) {
+    if (!moving(view)) continue;
+    const Measures& m = view.measures;
+    bars.categories.push_back(view.label + (view.noisy ? " (noisy)" : "") +
+                              (view.trouble.empty() ? "" : " (incomplete)"));
+    const double floor = is_slump(comparison) ? 1e-5 : 1e-8;
+    bars.groups[0].values.push_back(std::max(std::abs(*m.residual) * scale, floor));
+    bars.groups[1].values.push_back(m.predicted_creep && *m.predicted_creep > 0.0 ? scale * *m.predicted_creep
+                                                                                  : none);
+  }
+  if (bars.categories.empty()) return std::nullopt;
+  const Table table = table_of_runs(
+      comparison, "residual-speeds", "residual speeds and their cause",
+      {measure_column("Measured", unit, significant(2), &Measures::residual, scale),
+       measure_column("Predicted creep", unit, significant(2), &Measures::predicted_creep, scale),
+       {{"Ratio", "", significant(2)},
+        [](const RunView& view) {
+          const auto& creep = view.measures.predicted_creep;
+          return creep && *creep > 0.0 ? Table::Cell(std::abs(*view.measures.residual) / *creep)
+                                       : Table::Cell();
+        }},
+       measure_column("Scatter", unit_of(comparison), significant(2), &Measures::residual_scatter, scale),
+       {{"Cause", "", {}, true},
+        [](const RunView& view) { return Table::Cell(to_string(view.measures.cause)); }},
+       {{"Noise monitor", "", {}, true},
+        [](const RunView& view) { return Table::Cell(word(view.run.info, "/verdict")); }}},
+      moving);
+  return Chapter{"moving", "What still moves at the end, and why", {bars, table}};
+}
+
+/// What the gauge is counted from where a run is cut: the arrested spread of a slump.
+double stop_base(const Comparison& comparison, const RunView& view) {
+  if (!is_slump(comparison)) return 0.0;
+  return view.measures.overshoot_reference.value_or(view.measures.gauge_end.value_or(0.0));
+}
+
+std::optional<Chapter> stops_chapter(const Comparison& comparison) {
+  if (comparison.stops.size() < 2) return std::nullopt;
+  const bool slump = is_slump(comparison);
+  const double scale = scale_of(comparison);
+  Plot plot{"stops",
+            slump ? "what is read if the run is cut at a time" : "plug velocity if the run is cut at a time",
+            slump ? "Counted from the arrested spread of the elasto-viscoplastic run of the same solver "
+                    "where there is one, "
+                    "else of any solver, else from the run's own end. A level line needs no choice of when "
+                    "to stop; the "
+                    "slope of any other is the error that choice makes."
+                  : "A run that has come to rest needs no choice of when to stop.",
+            {"time of the stop", "s", false, false, comparison.stops.front(), comparison.stops.back()},
+            {slump ? "spread less the arrested one" : "plug velocity", unit_of(comparison)},
+            {}};
+  const auto measured = [](const RunView& view) {
+    return !view.exact && view.measures.stop_lowest.has_value();
+  };
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    if (!measured(view)) continue;
+    Curve curve{"", static_cast<int>(i), comparison.stops, {}};
+    for (const double stop : comparison.stops) {
+      const auto value = view.gauge_at(stop);
+      curve.y.push_back(value ? scale * (*value - stop_base(comparison, view)) : none);
+    }
+    if (view.held && view.measures.end) curve.held_from = *view.measures.end;
+    plot.curves.push_back(std::move(curve));
+  }
+  if (plot.curves.empty()) return std::nullopt;
+  const Format format = slump ? fixed(0) : significant(3);
+  const auto range = [](const RunView& view) {
+    return *view.measures.stop_highest - *view.measures.stop_lowest;
+  };
+  std::vector<RunColumn> columns = {
+      measure_column("Lowest reading", unit_of(comparison), format, &Measures::stop_lowest, scale),
+      measure_column("Highest reading", unit_of(comparison), format, &Measures::stop_highest, scale),
+      {{"Range", unit_of(comparison), format},
+       [=](const RunView& view) { return Table::Cell(scale * range(view)); }}};
+  if (slump)
+    columns.push_back(
+        {{"Range of the arrested spread", "%", fixed(1)}, [&comparison, range](const RunView& view) {
+           return Table::Cell(100.0 * range(view) / stop_base(comparison, view));
+         }});
+  return Chapter{"arbitrary-stops",
+                 "What an arbitrary stop would have said",
+                 {plot, table_of_runs(comparison, "stop-readings", "readings over all arbitrary stops",
+                                      columns, measured)}};
+}
+
+std::string difference_word(const std::string& kind) {
+  return kind == "both" ? "law and solver" : kind == "exact" ? "exact solution" : kind;
+}
+
+std::optional<Chapter> pairs_chapter(const Comparison& comparison) {
+  if (comparison.pairs.empty()) return std::nullopt;
+  const bool slump = is_slump(comparison);
+  const double scale = scale_of(comparison);
+  const std::string unit = unit_of(comparison);
+  Table table{
+      "pairs", "differences between profiles",
+      std::string(
+          slump ? "Norms of the difference in depth on a common radius grid, weighted by plan area over all "
+                  "that either run covers"
+                : "Norms of the difference in velocity on a common grid") +
+          ": L1 the mean, L2 the root of the mean square, L∞ the largest."};
+  table.columns = {{"Run", "", {}, true},
+                   {"against", "", {}, true},
+                   {"Differs in", "", {}, true},
+                   {slump ? "Spread" : "Plug velocity", unit, slump ? signed_fixed(0) : significant(3)},
+                   {"L1", unit, slump ? fixed(2) : significant(3)},
+                   {"L2", unit, slump ? fixed(2) : significant(3)},
+                   {"L∞", unit, slump ? fixed(1) : significant(3)},
+                   {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
+                   {"L2, relative", "%", significant(2)}};
+  table.choice = "Time";
+  std::map<double, std::vector<Table::Row>> by_time;
+  for (const Pair& pair : comparison.pairs)
+    for (const Pair::At& at : pair.at) {
+      const auto& e = at.error;
+      by_time[at.time].push_back(
+          {{comparison.runs[pair.run].label, comparison.runs[pair.reference].label,
+            difference_word(pair.kind), cell(at.gauge_difference, scale), scale * e.l1, scale * e.l2,
+            scale * e.linf, 100.0 * e.l1_relative, 100.0 * e.l2_relative},
+           static_cast<int>(pair.run),
+           "",
+           fmt::format("{:.4g} s", at.time)});
+    }
+  for (auto& [time, rows] : by_time)
+    for (auto& row : rows) table.rows.push_back(std::move(row));
+  return Chapter{"differences", "Differences between profiles", {table}};
+}
+
+std::optional<Chapter> cost_chapter(const Comparison& comparison) {
+  const auto priced = [](const RunView& view) { return !view.exact && view.measures.cpu.has_value(); };
+  Bars bars{"cost",
+            "CPU time of each run",
+            "CPU seconds summed over all threads, on the machine named under Provenance.",
+            {"CPU time", "s"},
+            {},
+            {{"CPU time", {}}}};
+  for (const RunView& view : comparison.runs) {
+    if (!priced(view)) continue;
+    bars.categories.push_back(view.label);
+    bars.groups[0].values.push_back(*view.measures.cpu);
+  }
+  if (bars.categories.empty()) return std::nullopt;
+  const auto [least, most] = std::minmax_element(bars.groups[0].values.begin(), bars.groups[0].values.end());
+  bars.x.logarithmic = *least > 0.0 && *most > 20.0 * *least;
+  const auto info = [](const std::string& name, const std::string& key, const std::string& other = "") {
+    return RunColumn{{name, "", key.ends_with("cpu_s") ? significant(3) : fixed(0)},
+                     [=](const RunView& view) {
+                       const auto value = number(view.run.info, key.c_str());
+                       return cell(value || other.empty() ? value : number(view.run.info, other.c_str()));
+                     }};
+  };
+  return Chapter{
+      "costs",
+      "What it cost",
+      {bars, table_of_runs(comparison, "costs-of-runs", "cost of each run",
+                           {measure_column("CPU time", "s", significant(3), &Measures::cpu),
+                            measure_column("Wall time", "s", significant(3), &Measures::wall),
+                            measure_column("CPU per simulated second", "s", significant(3),
+                                           &Measures::cpu_per_simulated_second),
+                            info("Steps", "/steps"), info("Particles", "/particles"), info("Cells", "/cells"),
+                            info("Particle-steps or cell-steps per CPU second", "/particle_steps_per_cpu_s",
+                                 "/cell_steps_per_cpu_s")},
+                           priced)}};
+}
+
+void flatten(const Json& json, const std::string& prefix,
+             std::vector<std::pair<std::string, std::string>>& facts) {
+  for (const auto& [key, value] : json.items()) {
+    std::string name = prefix + key;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (value.is_object())
+      flatten(value, name + " ", facts);
+    else
+      facts.emplace_back(name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+}
+
+Chapter provenance_chapter(const Comparison& comparison, const Json& json) {
+  Chapter chapter{"provenance", "Provenance", {}};
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    report::Details details{view.label, {}};
+    const std::string reason = word(view.run.info, "/reason"), verdict = word(view.run.info, "/verdict");
+    details.facts = {{"folder", view.run.directory.string()},
+                     {"status", word(view.run.info, "/status") + (reason.empty() ? "" : ": " + reason)},
+                     {"verdict", verdict.empty() ? "none" : verdict}};
+    flatten(json["runs"][i]["made_by"], "", details.facts);
+    chapter.blocks.push_back(details);
+  }
+  if (const std::string scene = comparison.runs.front().run.info.value("scene", ""); !scene.empty())
+    chapter.blocks.push_back(report::Details{"The scene, as read", {}, scene});
+  return chapter;
+}
+
+std::vector<Block> words_of(const Comparison& comparison) {
+  std::vector<Block> blocks;
+  std::map<Finding::Topic, std::string> told;
+  for (const Finding& finding : comparison.findings) {
+    if (blocks.empty())
+      blocks.push_back(Text{finding.text, Text::Style::opening});
+    else
+      told[finding.topic] += (told[finding.topic].empty() ? "" : " ") + finding.text;
+  }
+  for (const std::string& note : comparison.notes) blocks.push_back(Text{note, Text::Style::warning});
+  const std::pair<Finding::Topic, const char*> questions[] = {
+      {Finding::Topic::stop, "When does each stop, and where?"},
+      {Finding::Topic::difference, "Which difference is physics, which numerics?"},
+      {Finding::Topic::context, "What did it cost, and how far can it be trusted?"}};
+  for (const auto& [topic, question] : questions)
+    if (told.contains(topic)) blocks.push_back(report::Answer{question, told[topic]});
+  return blocks;
+}
+
+}  // namespace
+
+report::Page page_of(const Comparison& comparison, const Json& json) {
+  report::Page page{"comparison",
+                    comparison.title,
+                    entries_of(comparison),
+                    words_of(comparison),
+                    gauge_plot(comparison),
+                    {},
+                    json,
+                    json["provenance"]};
+  const auto add = [&](std::optional<Chapter> chapter) {
+    if (chapter) page.chapters.push_back(std::move(*chapter));
+  };
+  if (auto shapes = profiles(comparison)) add(Chapter{"shapes", "Shapes", {*shapes}});
+  add(shear_chapter(comparison));
+  add(residual_chapter(comparison));
+  add(stops_chapter(comparison));
+  add(Chapter{"fairness", "Which comparison is fair", {Text{comparison.fair}}});
+  add(Chapter{"all-measures", "Measures", {measures_table(comparison)}});
+  add(pairs_chapter(comparison));
+  add(cost_chapter(comparison));
+  add(provenance_chapter(comparison, json));
+  return page;
+}
+
+}  // namespace flowrest::compare
