@@ -15,6 +15,7 @@
 #endif
 #ifdef FLOWREST_HAS_COMPARE
 #include "compare/commands.h"
+#include "studies/commands.h"
 #endif
 
 namespace {
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
 #endif
 #ifdef FLOWREST_HAS_COMPARE
   compare::add_commands(app);
+  studies::add_commands(app);
 #endif
   cli::add_run_command(app);
   try {

@@ -1,6 +1,7 @@
 #include <sys/resource.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -62,6 +63,15 @@ nlohmann::ordered_json provenance() {
         {"system", system_name()}, {"cpu", cpu_model()}, {"cores", std::thread::hardware_concurrency()},
         {"written", utc_now()},
   };
+}
+
+double peak_memory_bytes() {
+  const auto kibibytes = [](int who) {
+    rusage usage{};
+    getrusage(who, &usage);
+    return static_cast<double>(usage.ru_maxrss);
+  };
+  return 1024.0 * std::max(kibibytes(RUSAGE_SELF), kibibytes(RUSAGE_CHILDREN));
 }
 
 double cpu_seconds(bool children) {

@@ -325,6 +325,7 @@ void RunWriter::finish(Status status, const std::string& reason, const std::stri
   info_["status"] = to_string(status);
   info_["reason"] = reason;
   info_["verdict"] = verdict;
+  info_["peak_memory_bytes"] = peak_memory_bytes();
   write();
 }
 

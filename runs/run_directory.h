@@ -118,6 +118,9 @@ Run read_run(const std::filesystem::path&);
 /// Provenance keys every run.json carries: versions, git hash, compiler, CPU model, cores.
 nlohmann::ordered_json provenance();
 
+/// The most memory that this process, or any one child it has waited for, has held at once, bytes.
+double peak_memory_bytes();
+
 /// CPU seconds of this process and, where `children`, of its finished children.
 double cpu_seconds(bool children = false);
 

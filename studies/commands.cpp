@@ -1,0 +1,124 @@
+#include "studies/commands.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "compare/words.h"
+#include "runs/run_directory.h"
+#include "scenes/cost.h"
+#include "studies/results.h"
+#include "studies/workflow.h"
+
+namespace flowrest::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudyOptions {
+  std::string study, output, cut;
+  WorkflowOptions workflow;
+  bool list = false, report_only = false, json = false;
+};
+
+double expected_cpu(const Point& point) {
+  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost.cpu_seconds
+                                      : scenes::mpm_cost(*point.scene).cpu_seconds;
+}
+
+/// What would be run, and for how long.
+void print_list(const std::vector<Point>& points) {
+  double total = 0.0;
+  std::set<std::string> seen;
+  for (const Point& point : points) {
+    if (!point.scene) {
+      fmt::print("{}: refused: {}\n", point.label, point.refused);
+      continue;
+    }
+    const double cpu = expected_cpu(point);
+    if (seen.insert(point.id).second) total += cpu;
+    fmt::print("{}: at most {} of CPU\n", point.label, compare::words::duration(cpu));
+  }
+  fmt::print("{} runs, at most {} of CPU, less where they come to rest before their end\n", seen.size(),
+             compare::words::duration(total));
+}
+
+void print_results(const Results& results, const Folder& folder, bool json) {
+  for (const std::string& note : results.notes) fmt::print("Note: {}\n", note);
+  for (const std::string& finding : results.findings) fmt::print("{}\n", finding);
+  const fs::path page = fs::absolute(folder.root / "index.html").lexically_normal();
+  fmt::print("\nThe study: {}\n", page.string());
+  if (json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"study", (folder.root / "study.json").string()},
+                                              {"points", results.results.size()},
+                                              {"notes", results.notes},
+                                              {"findings", results.findings}}
+                           .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+/// Something that must never happen happened: a run that is silently wrong, or that crashed.
+bool has_failure(const Results& results) {
+  for (const Result& r : results.results)
+    if (r.verdict == Verdict::unsound || r.verdict == Verdict::crashed) return true;
+  return false;
+}
+
+void run_study(const StudyOptions& options) {
+  const Study study = load_study(options.study);
+  const std::vector<Point> points = expand(study, options.cut);
+  if (options.list) return print_list(points);
+  const Folder folder{fs::absolute(options.output.empty() ? "out/studies/" + study.name : options.output)};
+  const FolderLock lock(folder.root);
+  const std::size_t missing = prepare(folder, study, points);
+  int code = 0;
+  if (missing > 0 && !options.report_only) code = run_workflow(folder, study, points, options.workflow);
+  const Results results = collect(folder, study, points, options.cut);
+  write_results(folder, results);
+  print_results(results, folder, options.json);
+  if (code == 130) fmt::print(stderr, "Interrupted; the same command goes on with it.\n");
+  constexpr int numerics_failed = 3;
+  if (code == 0 && has_failure(results)) code = numerics_failed;
+  if (code != 0) throw CLI::RuntimeError(code);
+}
+
+void add_study(CLI::App& app) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* command = app.add_subcommand("study", "Sweep settings of a scene: accuracy against cost");
+  command->add_option("study", options->study, "A study's name, or the path of its file")->required();
+  command->add_option("-o,--output", options->output,
+                      "Folder of the runs and the results (out/studies/STUDY)");
+  command->add_option("--cut", options->cut, "A named part of the study, such as quick");
+  command->add_option("-j,--jobs", options->workflow.cores, "Cores to use (all)")->check(CLI::PositiveNumber);
+  command->add_option("--profile", options->workflow.profile,
+                      "A Snakemake profile: where the runs are made, such as studies/workflow/slurm");
+  command->add_flag("--list", options->list, "Say what would be run and for how long; run nothing");
+  command->add_flag("--report-only", options->report_only, "Make no run; report on those there are");
+  command->add_flag("--json", options->json, "End with a machine-readable line");
+  command->add_flag("--quiet", options->workflow.quiet, "Print no progress");
+  command->callback([options] { run_study(*options); });
+}
+
+void add_job(CLI::App& app) {
+  struct Arguments {
+    std::string folder, id;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("study-job", "One run of a study; called by its workflow")->group("");
+  command->add_option("folder", arguments->folder, "The study's folder")->required();
+  command->add_option("id", arguments->id, "The job")->required();
+  command->callback([arguments] {
+    if (const int code = run_job(arguments->folder, arguments->id); code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app) {
+  add_study(app);
+  add_job(app);
+}
+
+}  // namespace flowrest::studies

@@ -1,0 +1,182 @@
+#include "studies/job.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "runs/process.h"
+#include "runs/run_directory.h"
+
+namespace flowrest::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::pair<Ending, const char*> ending_names[] = {
+    {Ending::missing, "missing"}, {Ending::finished, "finished"}, {Ending::stopped, "stopped"},
+    {Ending::refused, "refused"}, {Ending::crashed, "crashed"},   {Ending::too_long, "too long"}};
+
+Json read_json(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return file ? Json::parse(file, nullptr, false) : Json(Json::value_t::discarded);
+}
+
+/// The last line of a log that says something: what a program ended with.
+std::string last_words(const fs::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);)
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  const std::string prefix = "flowrest: ";
+  return last.starts_with(prefix) ? last.substr(prefix.size()) : last;
+}
+
+/// How the run directory says that this run ended; missing where it says anything else.
+Outcome ending_in(const fs::path& directory, const Json& settings) {
+  try {
+    const runs::Run run = runs::read_run(directory);
+    if (run.info.value("settings", Json()) != settings) return {};
+    const std::string reason = run.info.value("reason", "");
+    switch (run.status()) {
+      case runs::Status::at_rest:
+      case runs::Status::end_time:
+        return {Ending::finished, reason};
+      case runs::Status::failed:
+        return {Ending::stopped, reason};
+      default:
+        return {};
+    }
+  } catch (const runs::RunError&) {
+    return {};
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+struct Job {
+  std::string id, solver;
+  Json settings;
+  double longest_run = 0.0;  ///< s
+};
+
+Job read_job(const Folder& folder, const std::string& id) {
+  const Json jobs = read_json(folder.jobs_file());
+  if (!jobs.is_object() || !jobs.contains("jobs"))
+    throw runs::RunError(folder.jobs_file().string() + ": is not the list of jobs of a study");
+  for (const Json& job : jobs["jobs"])
+    if (job.value("id", "") == id)
+      return {id, job.value("solver", "mpm"), job.value("settings", Json()),
+              jobs.value("longest_run_s", 3600.0)};
+  throw runs::RunError(fmt::format("{}: has no job {}", folder.jobs_file().string(), id));
+}
+
+void mark(const Folder& folder, const Job& job, const Outcome& outcome, double wall) {
+  const Json text = {{"id", job.id},
+                     {"ending", to_string(outcome.ending)},
+                     {"reason", outcome.reason},
+                     {"wall_s", wall},
+                     {"settings", job.settings}};
+  fs::create_directories(folder.mark(job.id).parent_path());
+  runs::write_atomically(folder.mark(job.id),
+                         text.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// From the last checkpoint where this run left one, else from the start.
+std::vector<std::string> arguments_of(const Folder& folder, const Job& job) {
+  const fs::path run = folder.run(job.id);
+  const Json info = read_json(run / "run.json");
+  const bool begun = info.is_object() && info.value("settings", Json()) == job.settings &&
+                     info.value("status", "") != to_string(runs::Status::failed);
+  std::vector<std::string> arguments = {job.solver};
+  if (begun)
+    arguments.insert(arguments.end(), {"--resume", run.string()});
+  else
+    arguments.insert(arguments.end(), {folder.scene(job.id).string(), "-o", run.string()});
+  return arguments;
+}
+
+/// A run directory that cannot be gone on with makes room for a new one.
+void clear_unusable(const Folder& folder, const Job& job) {
+  const fs::path run = folder.run(job.id);
+  const Json info = read_json(run / "run.json");
+  if (fs::exists(run) && (!info.is_object() || info.value("settings", Json()) != job.settings))
+    fs::remove_all(run);
+}
+
+Outcome outcome_of_end(const Folder& folder, const Job& job, const runs::ProcessEnd& end, bool too_long) {
+  constexpr int refused = 2, failed = 3, interrupted = 130;
+  if (too_long) return {Ending::too_long, fmt::format("took longer than {:g} s", job.longest_run)};
+  if (end.signal == SIGKILL || end.signal == SIGTERM || end.signal == SIGINT || end.signal == SIGHUP)
+    return {};
+  if (end.signal != 0) return {Ending::crashed, end.how()};
+  if (end.exit_code == interrupted) return {};
+  const Outcome said = ending_in(folder.run(job.id), job.settings);
+  if ((end.exit_code == 0 || end.exit_code == failed) && said.ending != Ending::missing) return said;
+  const std::string why = last_words(folder.log(job.id));
+  if (end.exit_code == refused) return {Ending::refused, why};
+  return {Ending::crashed, fmt::format("{}: {}", end.how(), why)};
+}
+
+}  // namespace
+
+std::string to_string(Ending ending) {
+  for (const auto& [known, name] : ending_names)
+    if (known == ending) return name;
+  throw std::logic_error("an ending without a name");
+}
+
+Outcome outcome_of(const Folder& folder, const Point& point) {
+  if (!point.scene) return {Ending::refused, point.refused};
+  const Json marked = read_json(folder.mark(point.id));
+  if (!marked.is_object()) return {};
+  const Json settings = Json::parse(scenes::resolved_json(*point.scene));
+  const std::string ending = marked.value("ending", ""), reason = marked.value("reason", "");
+  if (marked.value("settings", Json()) != settings) return {};
+  for (const Ending without_data : {Ending::refused, Ending::crashed, Ending::too_long})
+    if (ending == to_string(without_data)) return {without_data, reason};
+  return ending_in(folder.run(point.id), settings);
+}
+
+int run_job(const fs::path& root, const std::string& id) {
+  const Folder folder{root};
+  const Job job = read_job(folder, id);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto wall = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  if (const Outcome there = ending_in(folder.run(id), job.settings); there.ending == Ending::finished) {
+    mark(folder, job, there, 0.0);  // it ended, but whoever waited for it was killed before it could say so
+    return 0;
+  }
+  fs::create_directories(folder.log(id).parent_path());
+  fs::create_directories(folder.run(id).parent_path());
+  clear_unusable(folder, job);
+  const runs::InterruptGuard guard;
+  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments_of(folder, job), fs::current_path(),
+                        folder.log(id), {});
+  bool too_long = false, asked = false;
+  while (!process.poll()) {
+    too_long = too_long || wall() > job.longest_run;
+    if ((too_long || runs::InterruptGuard::count() > 0) && !asked) {
+      process.signal(SIGINT);
+      asked = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const runs::ProcessEnd end = *process.poll();
+  constexpr int program_missing = 4, interrupted = 130;
+  if (end.exit_code == program_missing && end.signal == 0)
+    throw runs::MissingProgram(last_words(folder.log(id)));
+  const Outcome outcome = outcome_of_end(folder, job, end, too_long);
+  if (outcome.ending == Ending::missing) return runs::InterruptGuard::count() > 0 ? interrupted : 1;
+  mark(folder, job, outcome, wall());
+  return 0;
+}
+
+}  // namespace flowrest::studies

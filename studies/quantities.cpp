@@ -1,0 +1,158 @@
+#include "studies/quantities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "compare/measures/series.h"
+#include "scenes/text.h"
+
+namespace flowrest::studies {
+
+namespace {
+
+/// Columns of histories that say something of the flow.
+const std::vector<std::string> columns = {"spread_mm",          "spread_1p5_mm",      "spread_6_mm",
+                                          "spread_mass_995_mm", "height_mm",          "plug_velocity_m_s",
+                                          "mean_velocity_m_s",  "volume_m3",          "kinetic_energy_J",
+                                          "potential_energy_J", "elastic_energy_J",   "dissipated_energy_J",
+                                          "numerical_energy_J", "shear_rate_p99_1_s", "flocculation_mean",
+                                          "front_mm",           "discharged_fraction"};
+const std::vector<std::string> others = {"rest_time_s", "profile_l1", "profile_l2"};
+
+struct Name {
+  std::string base;
+  std::optional<double> time;  ///< s
+  bool well_formed = true;
+};
+
+Name parsed(const std::string& quantity) {
+  Name name;
+  const auto at = quantity.find('@');
+  name.base = quantity.substr(0, at);
+  if (at == std::string::npos) return name;
+  double time = 0.0;
+  const char* const end = quantity.data() + quantity.size();
+  const auto [last, error] = std::from_chars(quantity.data() + at + 1, end, time);
+  name.well_formed = error == std::errc{} && last == end && std::isfinite(time) && time >= 0.0;
+  name.time = time;
+  return name;
+}
+
+std::vector<std::string> every_name() {
+  std::vector<std::string> names = columns;
+  names.insert(names.end(), others.begin(), others.end());
+  return names;
+}
+
+bool came_to_its_end(const runs::Run& run) {
+  return run.status() == runs::Status::at_rest || run.status() == runs::Status::end_time;
+}
+
+std::optional<double> of_history(const runs::Run& run, const Name& name) {
+  if (!run.history.has(name.base) || run.history.rows() == 0) return std::nullopt;
+  const auto& time = run.history.at("time_s");
+  const auto& value = run.history.at(name.base);
+  double result = value.back();
+  if (!name.time) {
+    if (!came_to_its_end(run)) return std::nullopt;
+  } else if (*name.time > time.back() && run.status() != runs::Status::at_rest) {
+    return std::nullopt;  // what is at rest stays as it is; nothing else may be carried on
+  } else {
+    result = compare::interpolate(time, value, *name.time);
+  }
+  return std::isfinite(result) ? std::optional(result) : std::nullopt;
+}
+
+/// The profile in force at a time: the last one not after it, or the run's last.
+const runs::Profile* profile_at(const runs::Run& run, const std::optional<double>& time) {
+  const runs::Profile* found = nullptr;
+  for (const auto& profile : run.profiles)
+    if (!time || profile.time <= *time * (1.0 + 1e-9) + 1e-12) found = &profile;
+  return found;
+}
+
+bool is_radial(const runs::Run& run) {
+  if (run.info.at("kind") != "slump") return false;
+  const auto settings = run.info.find("settings");
+  if (settings == run.info.end() || !settings->contains("geometry")) return true;
+  return (*settings)["geometry"].value("dimension", "axisymmetric") != "plane";
+}
+
+/// Reference coordinates count from the middle of a duct or from its plate; both are laid from the middle.
+std::vector<double> from_middle(const runs::Run& run, const std::vector<double>& coordinate) {
+  if (run.info.at("kind") != "duct" || coordinate.empty() || coordinate.front() < 0.0) return coordinate;
+  const auto settings = run.info.find("settings");
+  if (settings == run.info.end()) return coordinate;
+  const double height = (*settings)["geometry"].value("height", 0.0);
+  std::vector<double> shifted;
+  for (const double y : coordinate) shifted.push_back(y - 0.5 * height);
+  return shifted;
+}
+
+std::optional<double> of_profile(const runs::Run& run, const Name& name, const runs::Run& reference) {
+  const auto* mine = profile_at(run, name.time);
+  const auto* other = profile_at(reference, name.time);
+  if (!mine || !other || mine->coordinate.size() < 2 || other->coordinate.size() < 2) return std::nullopt;
+  if (!name.time && !came_to_its_end(run)) return std::nullopt;
+  const auto own = from_middle(run, mine->coordinate), theirs = from_middle(reference, other->coordinate);
+  const double low = std::min(own.front(), theirs.front()), high = std::max(own.back(), theirs.back());
+  constexpr int points = 1000;
+  std::vector<double> grid, a, b;
+  for (int i = 0; i <= points; ++i) {
+    const double x = low + (high - low) * i / points;
+    grid.push_back(x);
+    a.push_back(x > own.back() && is_radial(run) ? 0.0 : compare::interpolate(own, mine->value, x));
+    b.push_back(x > theirs.back() && is_radial(run) ? 0.0 : compare::interpolate(theirs, other->value, x));
+  }
+  const auto error = compare::profile_error(grid, a, b, is_radial(run), 0.0);
+  return name.base == "profile_l1" ? error.l1_relative : error.l2_relative;
+}
+
+}  // namespace
+
+std::string complaint_about(const std::string& quantity) {
+  const Name name = parsed(quantity);
+  const auto known = every_name();
+  if (std::find(known.begin(), known.end(), name.base) == known.end()) {
+    const std::string near = scenes::nearest(name.base, known);
+    return fmt::format("the unknown quantity {}{}; allowed: {}, each also at a time (spread_mm@1.5)",
+                       scenes::quoted(quantity), near.empty() ? "" : ", nearest is " + near,
+                       scenes::joined(known));
+  }
+  if (!name.well_formed)
+    return fmt::format("{}, whose time is no number of seconds; allowed: such as spread_mm@1.5",
+                       scenes::quoted(quantity));
+  if (name.time && name.base == "rest_time_s") return "rest_time_s at a time; allowed: rest_time_s alone";
+  return {};
+}
+
+std::vector<std::string> quantity_examples() {
+  return {"spread_mm", "height_mm", "rest_time_s", "profile_l1"};
+}
+
+bool is_difference(const std::string& quantity) { return parsed(quantity).base.starts_with("profile_"); }
+
+std::string unit_of(const std::string& quantity) {
+  const std::string base = parsed(quantity).base;
+  const std::vector<std::pair<std::string, std::string>> endings = {
+      {"_mm", "mm"}, {"_m_s", "m/s"}, {"_1_s", "1/s"}, {"_m3", "m3"}, {"_J", "J"}, {"_s", "s"}};
+  for (const auto& [ending, unit] : endings)
+    if (base.ends_with(ending)) return unit;
+  return "1";
+}
+
+std::optional<double> measure(const runs::Run& run, const std::string& quantity, const runs::Run* reference) {
+  const Name name = parsed(quantity);
+  if (name.base == "rest_time_s") {
+    const auto rest = run.info.find("rest_time_s");
+    if (rest == run.info.end() || !rest->is_number()) return std::nullopt;
+    return rest->get<double>();
+  }
+  if (is_difference(quantity)) return reference ? of_profile(run, name, *reference) : std::nullopt;
+  return of_history(run, name);
+}
+
+}  // namespace flowrest::studies

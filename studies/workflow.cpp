@@ -1,0 +1,188 @@
+#include "studies/workflow.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "runs/process.h"
+#include "runs/progress.h"
+#include "runs/run_directory.h"
+#include "scenes/cost.h"
+
+namespace flowrest::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Points that are runs to be made, each once.
+std::vector<const Point*> runs_of(const std::vector<Point>& points) {
+  std::vector<const Point*> runs;
+  std::set<std::string> seen;
+  for (const Point& point : points)
+    if (point.scene && seen.insert(point.id).second) runs.push_back(&point);
+  return runs;
+}
+
+scenes::Cost cost_of(const Point& point) {
+  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost
+                                      : scenes::mpm_cost(*point.scene);
+}
+
+Json job_of(const Study& study, const Point& point) {
+  constexpr double mebibyte = 1048576.0, minute = 60.0;
+  const scenes::Cost cost = cost_of(point);
+  const int threads = point.solver == Solver::mpm ? std::max(1, point.scene->mpm.threads) : 1;
+  return {{"id", point.id},
+          {"label", point.label},
+          {"solver", to_string(point.solver)},
+          {"threads", threads},
+          {"memory_mb", static_cast<std::int64_t>(std::ceil(200.0 + 1.5 * cost.memory / mebibyte))},
+          {"minutes", static_cast<std::int64_t>(std::ceil(study.longest_run / minute)) + 1},
+          {"expected_cpu_s", cost.cpu_seconds},
+          {"settings", Json::parse(scenes::resolved_json(*point.scene))}};
+}
+
+/// The long runs first, so that no core waits for one at the end.
+std::vector<Json> jobs_of(const Study& study, const std::vector<Point>& points) {
+  std::vector<Json> jobs;
+  for (const Point* point : runs_of(points)) jobs.push_back(job_of(study, *point));
+  std::stable_sort(jobs.begin(), jobs.end(), [](const Json& a, const Json& b) {
+    return a["expected_cpu_s"].get<double>() > b["expected_cpu_s"].get<double>();
+  });
+  return jobs;
+}
+
+void write_if_new(const fs::path& path, const std::string& text) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string there{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file || there != text) runs::write_atomically(path, text);
+}
+
+void copy_workflow(const Folder& folder) {
+  const fs::path from = FLOWREST_WORKFLOW_FOLDER;
+  fs::copy_file(from / "Snakefile", folder.root / "Snakefile", fs::copy_options::overwrite_existing);
+}
+
+std::size_t ended(const Folder& folder, const std::vector<const Point*>& runs) {
+  return static_cast<std::size_t>(std::count_if(
+      runs.begin(), runs.end(), [&](const Point* p) { return fs::exists(folder.mark(p->id)); }));
+}
+
+std::vector<std::string> snakemake_arguments(const Folder& folder, const WorkflowOptions& options) {
+  const int cores =
+      options.cores > 0 ? options.cores : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  // The lock of the folder is ours and dies with its holders; Snakemake's would outlive a kill.
+  std::vector<std::string> arguments = {"--snakefile",
+                                        (folder.root / "Snakefile").string(),
+                                        "--directory",
+                                        folder.root.string(),
+                                        "--nolock",
+                                        "--keep-going",
+                                        "--rerun-incomplete",
+                                        "--rerun-triggers",
+                                        "mtime"};
+  if (options.profile.empty())
+    arguments.insert(arguments.end(), {"--cores", std::to_string(cores)});
+  else
+    arguments.insert(arguments.end(), {"--profile", fs::absolute(options.profile).string()});
+  arguments.insert(arguments.end(), options.more.begin(), options.more.end());
+  return arguments;
+}
+
+/// What went wrong, for the user: the tail of Snakemake's own log.
+std::string tail_of(const fs::path& log) {
+  std::ifstream file(log);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    lines.push_back(line);
+    if (lines.size() > 20) lines.erase(lines.begin());
+  }
+  std::string text;
+  for (const auto& line : lines) text += fmt::format("  {}\n", line);
+  return text;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& root) {
+  std::error_code error;
+  fs::create_directories(root, error);
+  const fs::path path = root / ".lock";
+  // Not closed on exec: what we start goes on holding the folder if we are killed.
+  file_ = open(path.c_str(), O_RDWR | O_CREAT, 0644);
+  if (file_ < 0)
+    throw runs::RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+  if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  close(file_);
+  throw runs::RunError(fmt::format(
+      "{}: another study is at work here, or the last runs of one that was killed; wait for them or end them",
+      root.string()));
+}
+
+FolderLock::~FolderLock() {
+  if (file_ >= 0) close(file_);
+}
+
+std::size_t prepare(const Folder& folder, const Study& study, const std::vector<Point>& points) {
+  for (const char* name : {"jobs", "runs", "logs", "ended"}) fs::create_directories(folder.root / name);
+  std::size_t missing = 0;
+  for (const Point* point : runs_of(points)) {
+    write_if_new(folder.scene(point->id), scenes::resolved_toml(*point->scene));
+    if (outcome_of(folder, *point).ending != Ending::missing) continue;
+    fs::remove(folder.mark(point->id));
+    ++missing;
+  }
+  const Json jobs = {{"flowrest", fs::read_symlink("/proc/self/exe").string()},
+                     {"study", study.name},
+                     {"longest_run_s", study.longest_run},
+                     {"jobs", jobs_of(study, points)}};
+  write_if_new(folder.jobs_file(), jobs.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  copy_workflow(folder);
+  return missing;
+}
+
+int run_workflow(const Folder& folder, const Study& study, const std::vector<Point>& points,
+                 const WorkflowOptions& options) {
+  const auto snakemake = runs::find_program("snakemake");
+  if (!snakemake)
+    throw runs::MissingProgram(
+        "snakemake is not installed; on Debian: apt-get install snakemake (or scripts/setup)");
+  const auto runs = runs_of(points);
+  const runs::InterruptGuard guard;
+  runs::Progress progress("study " + study.name, static_cast<double>(runs.size()), options.quiet);
+  const fs::path log = folder.root / "snakemake.log";
+  runs::Process process(*snakemake, snakemake_arguments(folder, options), folder.root, log, {});
+  int asked = 0;
+  while (!process.poll()) {
+    if (runs::InterruptGuard::count() > asked) {
+      process.signal(SIGINT);
+      asked = runs::InterruptGuard::count();
+    }
+    const std::size_t done = ended(folder, runs);
+    progress.update(static_cast<double>(done), fmt::format("{} of {} runs", done, runs.size()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  const std::size_t done = ended(folder, runs);
+  progress.finish(fmt::format("{} of {} runs have ended", done, runs.size()));
+  if (asked > 0) return 130;
+  if (process.poll()->good() && done == runs.size()) return 0;
+  fmt::print(stderr, "Some runs could not be made ({}); the end of {}:\n{}", process.poll()->how(),
+             log.string(), tail_of(log));
+  return 1;
+}
+
+}  // namespace flowrest::studies
