@@ -102,8 +102,15 @@ class StudyPage {
     return points;
   }
 
+  /// A line of its own look, which is no sweep.
+  int add_entry(const std::string& name, int colour, int dash) {
+    if (const int there = entry_of(name); there >= 0) return there;
+    page_.entries.push_back({name, colour, dash, {}, {}});
+    return static_cast<int>(page_.entries.size()) - 1;
+  }
+
   /// The line under which nothing cheaper of one solver lies.
-  void add_front(Plot& plot, const std::string& quantity, Solver solver) const {
+  void add_front(Plot& plot, const std::string& quantity, Solver solver) {
     std::vector<const Result*> front;
     for (const Result* r : points_with_error(quantity))
       if (r->point.solver == solver && r->pareto.contains(quantity) && r->pareto.at(quantity))
@@ -111,8 +118,8 @@ class StudyPage {
     if (front.size() < 2) return;
     std::sort(front.begin(), front.end(), [](auto* a, auto* b) { return a->cpu < b->cpu; });
     Curve curve;
-    curve.name =
-        solver == Solver::mpm ? "MPM: nothing cheaper is as good" : "OpenFOAM: nothing cheaper is as good";
+    curve.entry = solver == Solver::mpm ? add_entry("MPM: nothing cheaper is as good", -1, 1)
+                                        : add_entry("OpenFOAM: nothing cheaper is as good", -1, 2);
     for (const Result* r : front) {
       curve.x.push_back(r->cpu);
       curve.y.push_back(percent_of(r->errors.at(quantity)));
@@ -123,19 +130,19 @@ class StudyPage {
   /// Errors on a logarithmic axis: none is so small that it says more than the digits it is computed with.
   static double percent_of(double error) { return 100.0 * std::max(error, 1e-6); }
 
-  Plot trade_of(const std::string& quantity) const {
+  Plot trade_of(const std::string& quantity) {
     Plot plot;
     plot.id = "trade-" + id_for(quantity);
     plot.title = fmt::format("Error of {} against CPU time", quantity);
     plot.x = Axis{"CPU time", "s", true};
     plot.y = Axis{"error", "%", true};
-    for (const report::Entry& entry : page_.entries) {
+    for (const Sweep& sweep : results_.study.sweeps) {
       Curve curve;
-      curve.entry = entry_of(entry.name);
+      curve.entry = entry_of(sweep.name);
       curve.line = false;
       curve.marks = true;
       for (const Result* r : points_with_error(quantity)) {
-        if (r->point.sweep != entry.name) continue;
+        if (r->point.sweep != sweep.name) continue;
         curve.x.push_back(r->cpu);
         curve.y.push_back(percent_of(r->errors.at(quantity)));
         curve.hover.push_back(hover_of(*r, quantity));
@@ -147,7 +154,7 @@ class StudyPage {
     return plot;
   }
 
-  void add_floor(Plot& plot, const std::string& quantity) const {
+  void add_floor(Plot& plot, const std::string& quantity) {
     const ReferenceValue& reference = results_.reference.at(quantity);
     const double scale = is_difference(quantity) ? 1.0 : std::abs(reference.value);
     const double floor = reference.uncertainty && scale > 0.0 ? 100.0 * *reference.uncertainty / scale : 0.0;
@@ -160,7 +167,7 @@ class StudyPage {
         high = std::max(high, x);
       }
     Curve line;
-    line.name = "uncertainty of the reference";
+    line.entry = add_entry("uncertainty of the reference", -1, 3);
     line.x = {low, high};
     line.y = {floor, floor};
     plot.curves.push_back(std::move(line));
@@ -168,6 +175,7 @@ class StudyPage {
   }
 
   void add_trade() {
+    if (results_.limit) add_limit();
     std::vector<Block> others;
     for (const std::string& quantity : results_.study.quantities) {
       if (!results_.reference.contains(quantity) || points_with_error(quantity).empty()) continue;
@@ -176,10 +184,9 @@ class StudyPage {
       else
         others.push_back(trade_of(quantity));
     }
-    if (results_.limit) add_limit();
     if (!others.empty()) page_.chapters.push_back({"others", "Other quantities", std::move(others)});
     if (!results_.prices.empty())
-      page_.chapters.push_back({"prices", "What each choice costs and buys", {prices()}});
+      page_.chapters.push_back({"choices", "What each choice costs and buys", {prices()}});
   }
 
   void add_limit() {
@@ -189,7 +196,7 @@ class StudyPage {
     plot.title = fmt::format("{} against {}", wish.quantity, wish.key);
     plot.x = Axis{wish.key, "", true};
     plot.y = Axis{wish.quantity, unit_of(wish.quantity)};
-    plot.caption = results_.limit_words;
+    plot.caption = results_.limit_basis;
     std::map<double, Curve> by_cell;
     double low = 0.0, high = 0.0;
     for (const Result& r : results_.results)
@@ -198,7 +205,8 @@ class StudyPage {
           continue;
         const double x = std::stod(s.value), cell = r.point.scene->mpm.cell;
         Curve& curve = by_cell[cell];
-        curve.name = fmt::format("cells of {:g} mm", 1e3 * cell);
+        curve.entry =
+            add_entry(fmt::format("cells of {:g} mm", 1e3 * cell), static_cast<int>(by_cell.size()) % 7, 0);
         curve.marks = true;
         curve.x.push_back(x);
         curve.y.push_back(r.values.at(wish.quantity));
@@ -206,21 +214,18 @@ class StudyPage {
         high = std::max(high, x);
       }
     for (auto& [cell, curve] : by_cell) plot.curves.push_back(std::move(curve));
-    const auto level = [&](const std::string& name, double y) {
+    const auto level = [&](const std::string& name, double y, int dash) {
       Curve line;
-      line.name = name;
+      line.entry = add_entry(name, -1, dash);
       line.x = {low, high};
       line.y = {y, y};
       plot.curves.push_back(std::move(line));
     };
     level(fmt::format("limit, {:.0f} with an uncertainty of {:.0f}", results_.limit->value,
                       results_.limit->uncertainty),
-          results_.limit->value);
-    if (!wish.compare_to_name.empty()) level(wish.compare_to_name, wish.compare_to);
-    if (!page_.figure)
-      page_.figure = std::move(plot);
-    else
-      page_.chapters.push_back({"limit-chapter", "The limit", {std::move(plot)}});
+          results_.limit->value, 1);
+    if (!wish.compare_to_name.empty()) level(wish.compare_to_name, wish.compare_to, 2);
+    page_.figure = std::move(plot);
   }
 
   Table prices() const {

@@ -331,6 +331,23 @@ std::vector<Price> prices_of(const Results& results) {
   return prices;
 }
 
+void describe_limit(Results& results, double cell, std::size_t count, double scatter, bool second_grid) {
+  const LimitWish& wish = *results.study.limit;
+  const compare::Limit& limit = *results.limit;
+  const std::string unit = unit_of(wish.quantity);
+  results.limit_words = fmt::format("As {} grows, {} tends to {:.0f} {}, with an uncertainty of {:.0f} {}.",
+                                    wish.key, wish.quantity, limit.value, unit, limit.uncertainty, unit);
+  if (!wish.compare_to_name.empty())
+    results.limit_words +=
+        fmt::format(" The {}, {:.0f} {}, is {} that.", wish.compare_to_name, wish.compare_to, unit,
+                    std::abs(limit.value - wish.compare_to) <= limit.uncertainty ? "within" : "not within");
+  results.limit_basis = fmt::format(
+      "The limit is that of {} values on cells of {:g} m, whose distance from it falls as {}^-{:.2f}; {}.",
+      count, cell, wish.key, limit.exponent,
+      second_grid ? fmt::format("on the next coarser cells they differ by up to {:.0f} {}", scatter, unit)
+                  : std::string("no second grid says how far they are converged"));
+}
+
 /// The limit from the runs on the finest cells; coarser ones say how uncertain each value is.
 void find_limit(Results& results) {
   if (!results.study.limit) return;
@@ -361,22 +378,7 @@ void find_limit(Results& results) {
     value.push_back(v);
   }
   results.limit = compare::limit_of_growing(x, value, scatter);
-  const std::string unit = unit_of(wish.quantity);
-  results.limit_words = fmt::format(
-      "As {} grows, {} tends to {:.0f} {} with an uncertainty of {:.0f} {} (values minus limit go as its "
-      "power "
-      "-{:.2f}; from {} values on cells of {:g} m{}).",
-      wish.key, wish.quantity, results.limit->value, unit, results.limit->uncertainty, unit,
-      results.limit->exponent, x.size(), by_cell.begin()->first,
-      by_cell.size() > 1 ? fmt::format(", which differ from those on {:g} m by up to {:.0f} {}",
-                                       std::next(by_cell.begin())->first, scatter, unit)
-                         : "; no second grid says how far they are converged");
-  if (!wish.compare_to_name.empty()) {
-    const double off = results.limit->value - wish.compare_to;
-    results.limit_words += fmt::format(" The {} is {:.0f} {}: {:+.0f} {} from it, {} the uncertainty.",
-                                       wish.compare_to_name, wish.compare_to, unit, off, unit,
-                                       std::abs(off) <= results.limit->uncertainty ? "within" : "beyond");
-  }
+  describe_limit(results, by_cell.begin()->first, x.size(), scatter, by_cell.size() > 1);
 }
 
 void find_notes(Results& results) {
@@ -416,7 +418,8 @@ void find_findings(Results& results) {
   }
   const auto main = std::find_if(results.study.quantities.begin(), results.study.quantities.end(),
                                  [&](const auto& q) { return results.reference.contains(q); });
-  if (main == results.study.quantities.end()) return;
+  // A study that seeks a limit varies what is simulated: nearness to the reference is no merit of a run's.
+  if (main == results.study.quantities.end() || results.study.limit) return;
   for (const double bound : {0.05, 0.02, 0.01}) {
     for (const Solver solver : {Solver::mpm, Solver::foam}) {
       const Result* cheapest = nullptr;
@@ -483,7 +486,8 @@ Results collect(const Folder& folder, const Study& study, const std::vector<Poin
   find_limit(results);
   find_notes(results);
   find_findings(results);
-  if (!results.limit_words.empty()) results.findings.insert(results.findings.begin(), results.limit_words);
+  if (results.limit)
+    results.findings.insert(results.findings.begin(), {results.limit_words, results.limit_basis});
   return results;
 }
 

@@ -65,7 +65,7 @@ struct Results {
   std::vector<Result> results;  ///< points, then the runs of the reference
   std::vector<Price> prices;
   std::optional<compare::Limit> limit;
-  std::string limit_words;
+  std::string limit_words, limit_basis;
   std::vector<std::string> notes;  ///< what a reader must know before trusting anything
   std::vector<std::string> findings;
 };

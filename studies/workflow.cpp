@@ -167,13 +167,16 @@ int run_workflow(const Folder& folder, const Study& study, const std::vector<Poi
   const fs::path log = folder.root / "snakemake.log";
   runs::Process process(*snakemake, snakemake_arguments(folder, options), folder.root, log, {});
   int asked = 0;
+  std::size_t shown = runs.size() + 1;
   while (!process.poll()) {
     if (runs::InterruptGuard::count() > asked) {
       process.signal(SIGINT);
       asked = runs::InterruptGuard::count();
     }
     const std::size_t done = ended(folder, runs);
-    progress.update(static_cast<double>(done), fmt::format("{} of {} runs", done, runs.size()));
+    if (done != shown)
+      progress.update(static_cast<double>(done), fmt::format("{} of {} runs", done, runs.size()));
+    shown = done;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
   const std::size_t done = ended(folder, runs);
