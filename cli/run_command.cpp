@@ -15,6 +15,11 @@
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
+#ifdef FLOWREST_HAS_COMPARE
+#include "compare/words.h"
+#include "studies/accuracy.h"
+#include "studies/quantities.h"
+#endif
 
 namespace flowrest::cli {
 
@@ -24,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct RunCommandOptions {
   std::vector<std::string> scenes, set;
-  std::string output = "out";
+  std::string output = "out", accuracy;
   int jobs = 0;
 };
 
@@ -174,6 +179,78 @@ int compare_runs(const scenes::Scene& scene, const std::string& named, const fs:
 }
 #endif
 
+#ifdef FLOWREST_HAS_COMPARE
+Job accuracy_job(const std::string& named, const fs::path& directory, const RunCommandOptions& options,
+                 const std::vector<std::string>& chosen) {
+  Job job;
+  job.name = fmt::format("{} {}", fs::path(named).stem().string(), directory.filename().string());
+  job.directory = directory;
+  job.arguments = {"mpm", named, "-o", directory.string()};
+  add_settings(job.arguments, options.set);
+  add_settings(job.arguments, chosen);
+  return job;
+}
+
+/// Whether the run and its coarser twin agree with what was expected, in words and in accuracy.json.
+/// @return the exit code
+int check_accuracy(const fs::path& folder, const studies::Choice& choice, double wanted) {
+  const runs::Run run = runs::read_run(folder / "mpm"), twin = runs::read_run(folder / "mpm-coarser-twin");
+  const std::string quantity = run.info.at("kind") == "slump" ? "spread_mm" : "mean_velocity_m_s";
+  const auto value = studies::measure(run, quantity), other = studies::measure(twin, quantity);
+  if (!value || !other || *value == 0.0) {
+    fmt::print("The accuracy cannot be checked: a run did not come to its end.\n");
+    return 3;
+  }
+  const double coarser = choice.twin_cell / choice.cell,
+               error = studies::error_by_twin(*value, *other, coarser);
+  const bool held = error <= wanted;
+  fmt::print(
+      "{} = {:.4g} {}. On cells {:.2g} times as wide it is {:.4g}: at first order that leaves an error of "
+      "{}. The {} "
+      "asked for {}.\n",
+      quantity, *value, studies::unit_of(quantity), coarser, *other, compare::words::percent(error),
+      compare::words::percent(wanted), held ? "hold" : "are not shown to hold");
+  const nlohmann::ordered_json json = {
+      {"quantity", quantity},
+      {"value", *value},
+      {"wanted", wanted},
+      {"expected_error", choice.expected_error},
+      {"why", choice.why},
+      {"cell_m", choice.cell},
+      {"twin_cell_m", choice.twin_cell},
+      {"twin_value", *other},
+      {"error_by_twin", error},
+      {"held", held},
+      {"cpu_s", run.info.value("cpu_s", 0.0) + twin.info.value("cpu_s", 0.0)}};
+  runs::write_atomically(folder / "accuracy.json", json.dump(1) + "\n");
+  return held ? 0 : 3;
+}
+
+/// Runs a scene with the cheapest settings that are known to reach an accuracy, and a coarser twin that
+/// checks it.
+int run_accurately(const std::string& named, const RunCommandOptions& options) {
+  const double wanted = studies::accuracy_from(options.accuracy);
+  scenes::Overrides overrides;
+  overrides.set = options.set;
+  const scenes::Scene scene = scenes::load_scene(named, overrides);
+  const studies::Choice choice = studies::choose(studies::stored_knowledge(), scene, wanted);
+  fmt::print(
+      "Chosen for {}: {}.\nExpected error {}, expected cost {} of CPU with the coarser twin (cells of {:g} "
+      "m) that "
+      "checks it.\n",
+      compare::words::percent(wanted), choice.why, compare::words::percent(choice.expected_error),
+      compare::words::duration(choice.expected_cpu), choice.twin_cell);
+  std::fflush(stdout);
+  const fs::path folder = fs::path(options.output) / scene.name / "accuracy";
+  fs::create_directories(folder / "logs");
+  std::deque<Job> jobs = {accuracy_job(named, folder / "mpm", options, choice.set),
+                          accuracy_job(named, folder / "mpm-coarser-twin", options, choice.twin_set)};
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int code = Scheduler(std::move(jobs), options.jobs > 0 ? options.jobs : cores, folder / "logs").run();
+  return code != 0 ? code : check_accuracy(folder, choice, wanted);
+}
+#endif
+
 int run_scene(const std::string& named, const RunCommandOptions& options) {
   scenes::Overrides overrides;
   overrides.set = options.set;
@@ -211,11 +288,21 @@ void add_run_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("-o,--output", options->output, "Folder that receives SCENE/RUN and SCENE/report")
       ->capture_default_str();
+#ifdef FLOWREST_HAS_COMPARE
+  command->add_option(
+      "--accuracy", options->accuracy,
+      "Instead, one MPM run with the cheapest settings that are known to reach this, such as 2%");
+#endif
   command->add_option("-j,--jobs", options->jobs, "Runs at once (as many as there are cores)");
   command->callback([options] {
     int code = 0;
     for (const auto& scene : options->scenes) {
+#ifdef FLOWREST_HAS_COMPARE
+      const int scene_code =
+          options->accuracy.empty() ? run_scene(scene, *options) : run_accurately(scene, *options);
+#else
       const int scene_code = run_scene(scene, *options);
+#endif
       if (code == 0) code = scene_code;
       if (scene_code == 130) break;
     }

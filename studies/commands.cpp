@@ -6,9 +6,12 @@
 #include <set>
 
 #include "compare/words.h"
+#include "runs/process.h"
 #include "runs/run_directory.h"
 #include "scenes/cost.h"
+#include "studies/accuracy.h"
 #include "studies/results.h"
+#include "studies/verification/verification.h"
 #include "studies/workflow.h"
 
 namespace flowrest::studies {
@@ -20,7 +23,7 @@ namespace fs = std::filesystem;
 struct StudyOptions {
   std::string study, output, cut;
   WorkflowOptions workflow;
-  bool list = false, report_only = false, json = false;
+  bool list = false, report_only = false, keep = false, json = false;
 };
 
 double expected_cpu(const Point& point) {
@@ -77,6 +80,11 @@ void run_study(const StudyOptions& options) {
   const Results results = collect(folder, study, points, options.cut);
   write_results(folder, results);
   print_results(results, folder, options.json);
+  if (options.keep) {
+    const fs::path kept = scenes::scenes_folder() / "studies" / (study.name + ".known.json");
+    runs::write_atomically(kept, knowledge_json(results).dump(1) + "\n");
+    fmt::print("Kept for `flowrest run --accuracy`: {}\n", kept.string());
+  }
   if (code == 130) fmt::print(stderr, "Interrupted; the same command goes on with it.\n");
   constexpr int numerics_failed = 3;
   if (code == 0 && has_failure(results)) code = numerics_failed;
@@ -95,6 +103,8 @@ void add_study(CLI::App& app) {
                       "A Snakemake profile: where the runs are made, such as studies/workflow/slurm");
   command->add_flag("--list", options->list, "Say what would be run and for how long; run nothing");
   command->add_flag("--report-only", options->report_only, "Make no run; report on those there are");
+  command->add_flag("--keep", options->keep,
+                    "Keep what was found for `flowrest run --accuracy`, in scenes/studies/STUDY.known.json");
   command->add_flag("--json", options->json, "End with a machine-readable line");
   command->add_flag("--quiet", options->workflow.quiet, "Print no progress");
   command->callback([options] { run_study(*options); });
@@ -114,10 +124,58 @@ void add_job(CLI::App& app) {
   });
 }
 
+std::string names_of(const std::vector<verification::Case>& cases) {
+  std::string names;
+  for (const auto& c : cases) names += fmt::format("  {}, {}\n", c.name, c.variant);
+  return names;
+}
+
+/// @return the exit code
+int run_verification(const fs::path& folder, const verification::Options& options) {
+  const auto findings = verification::verify(verification::all_cases(), folder, options);
+  if (findings.empty())
+    throw scenes::SceneError(fmt::format("no case is named so; allowed: a part of the name of one:\n{}",
+                                         names_of(verification::all_cases())));
+  runs::write_atomically(folder / "verification.json", verification::to_json(findings).dump(1) + "\n");
+  runs::write_atomically(folder / "verification.csv", verification::to_csv(findings));
+  runs::write_atomically(folder / "index.html", report::render(verification::page_of(findings)));
+  bool all = true;
+  for (const auto& f : findings) {
+    fmt::print("{} {}, {}: {}\n",
+               !f.judged  ? "  "
+               : f.passed ? "ok"
+                          : "!!",
+               f.of.name, f.of.variant, f.verdict);
+    all = all && (f.passed || !f.judged);
+  }
+  fmt::print("\nThe verification: {}\n", fs::absolute(folder / "index.html").lexically_normal().string());
+  constexpr int numerics_failed = 3;
+  return all ? 0 : numerics_failed;
+}
+
+void add_verify(CLI::App& app) {
+  auto options = std::make_shared<verification::Options>();
+  auto output = std::make_shared<std::string>("out/verification");
+  CLI::App* command =
+      app.add_subcommand("verify", "Every exactly known case on three grids: errors and orders");
+  command->add_option("-o,--output", *output, "Folder of the results")->capture_default_str();
+  command->add_flag("--quick", options->quick, "The part that takes three minutes instead of twenty");
+  command->add_option("--only", options->only, "Cases whose name or variant holds this text");
+  command->add_option("-j,--jobs", options->jobs, "Computations at once (as many as there are cores)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--quiet", options->quiet, "Print no progress");
+  command->callback([options, output] {
+    fs::create_directories(*output);
+    const int code = run_verification(*output, *options);
+    if (code != 0) throw CLI::RuntimeError(code);
+  });
+}
+
 }  // namespace
 
 void add_commands(CLI::App& app) {
   add_study(app);
+  add_verify(app);
   add_job(app);
 }
 

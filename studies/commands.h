@@ -4,7 +4,7 @@
 
 namespace flowrest::studies {
 
-/// Adds `flowrest study` and the job that its workflow calls.
+/// Adds `flowrest study`, the job that its workflow calls, and `flowrest verify`.
 void add_commands(CLI::App&);
 
 }  // namespace flowrest::studies

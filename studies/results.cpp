@@ -50,12 +50,12 @@ void describe_run(Result& r, const runs::Run& run) {
 void judge(Result& r, const runs::Run& run) {
   const std::string verdict = run.info.value("verdict", "");
   const std::string wrong = unsound(run, *r.point.scene);
-  if (verdict != "sound") {
-    r.verdict = Verdict::noisy;
-    r.reason = verdict;
-  } else if (!wrong.empty()) {
-    r.verdict = Verdict::unsound;
+  if (!wrong.empty() && (verdict == "sound" || verdict.find("under-resolved") != std::string::npos)) {
+    r.verdict = Verdict::unsound;  // too few cells are no excuse for what cannot be
     r.reason = wrong;
+  } else if (verdict != "sound") {
+    r.verdict = Verdict::noisy;
+    r.reason = wrong.empty() ? verdict : fmt::format("{}; {}", verdict, wrong);
   } else {
     r.verdict = Verdict::sound;
   }

@@ -1,0 +1,258 @@
+#include "studies/accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "compare/words.h"
+#include "runs/run_directory.h"
+#include "scenes/cost.h"
+#include "scenes/text.h"
+
+namespace flowrest::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double twin_is_coarser = 1.6;
+
+/// The size of a scene's body, m.
+double length_of(const scenes::Scene& scene) {
+  return scene.kind == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.duct().height;
+}
+
+std::string percent(double fraction) { return compare::words::percent(fraction); }
+
+bool is_cell(const std::string& key) { return key == "mpm.cell" || key == "foam.cell"; }
+
+Json point_json(const Result& r, const std::string& quantity) {
+  Json settings = Json::object();
+  for (const Setting& s : r.point.varied)
+    if (!is_cell(s.key) && s.key != "material.model") settings[s.key] = s.value;
+  return {{"model", scenes::to_string(r.point.scene->material.model)},
+          {"settings", settings},
+          {"cell_m", r.point.scene->mpm.cell},
+          {"relative_error", r.errors.at(quantity)},
+          {"cpu_s", r.cpu},
+          {"expected_cpu_s", scenes::mpm_cost(*r.point.scene).cpu_seconds}};
+}
+
+/// Settings of the material or the geometry change what is simulated: they are no means to an accuracy.
+bool is_means(const Result& r) {
+  return std::all_of(r.point.varied.begin(), r.point.varied.end(), [](const Setting& s) {
+    return s.key.starts_with("mpm.") || s.key == "material.model" || s.key == "time.rest_bound";
+  });
+}
+
+template <class T>
+T named(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  if (found == json.end()) throw runs::RunError(fmt::format("'{}' is missing", key));
+  return found->get<T>();
+}
+
+scenes::Kind kind_from(const std::string& name) {
+  for (const auto kind : {scenes::Kind::slump, scenes::Kind::duct})
+    if (scenes::to_string(kind) == name) return kind;
+  throw runs::RunError(fmt::format("the kind of scene '{}' is unknown", name));
+}
+
+scenes::Dimension dimension_from(const std::string& name) {
+  using scenes::Dimension;
+  for (const auto d : {Dimension::axisymmetric, Dimension::plane, Dimension::quarter, Dimension::full})
+    if (scenes::to_string(d) == name) return d;
+  throw runs::RunError(fmt::format("the dimension '{}' is unknown", name));
+}
+
+/// A cell that suits the scene: in a duct a whole number of them lies between the plates.
+double suited_cell(const scenes::Scene& scene, double cell) {
+  if (scene.kind != scenes::Kind::duct) return cell;
+  return scene.duct().height / std::ceil(scene.duct().height / cell * (1.0 - 1e-9));
+}
+
+std::vector<std::string> settings_with(const KnownPoint& point, double cell) {
+  std::vector<std::string> set;
+  for (const auto& [key, value] : point.settings) set.push_back(fmt::format("{}={}", key, value));
+  set.push_back(fmt::format("mpm.cell={}", scenes::exact_text(cell)));
+  return set;
+}
+
+struct Candidate {
+  const Knowledge* knowledge = nullptr;
+  const KnownPoint* point = nullptr;
+  double error() const { return point->error + knowledge->uncertainty; }
+};
+
+std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const scenes::Scene& scene) {
+  std::vector<Candidate> candidates;
+  for (const Knowledge& k : all)
+    for (const KnownPoint& p : k.points)
+      if (k.kind == scene.kind && k.dimension == scene.geometry.dimension && p.model == scene.material.model)
+        candidates.push_back({&k, &p});
+  return candidates;
+}
+
+[[noreturn]] void nothing_known(const std::vector<Knowledge>& all, const scenes::Scene& scene) {
+  std::string known;
+  for (const Knowledge& k : all)
+    known += fmt::format("{}{} ({}, by the study {})", known.empty() ? "" : "; ", scenes::to_string(k.kind),
+                         scenes::to_string(k.dimension), k.study);
+  throw scenes::SceneError(fmt::format(
+      "{}: no study has measured what accuracy a {} ({}, {}) costs, so no settings can be chosen for one; "
+      "known: "
+      "{}. Make one with `flowrest study STUDY --keep`, or give the cell yourself",
+      scene.path.string(), scenes::to_string(scene.kind), scenes::to_string(scene.geometry.dimension),
+      scenes::to_string(scene.material.model), known.empty() ? "nothing" : known));
+}
+
+scenes::Scene with_settings(const scenes::Scene& scene, const std::vector<std::string>& set) {
+  return scenes::parse_scene(scenes::resolved_toml(scene), scene.path, {set, std::nullopt});
+}
+
+}  // namespace
+
+Json knowledge_json(const Results& results) {
+  const std::string quantity = results.study.quantities.front();
+  const auto reference = results.reference.find(quantity);
+  if (reference == results.reference.end() || !reference->second.uncertainty ||
+      reference->second.value == 0.0)
+    throw runs::RunError(fmt::format(
+        "the study has no reference with an uncertainty for {}: there is nothing to keep", quantity));
+  Json points = Json::array();
+  const scenes::Scene* scene = nullptr;
+  std::string made_by;
+  for (const Result& r : results.results) {
+    if (r.point.role != Point::Role::point || r.point.solver != Solver::mpm || r.verdict != Verdict::sound ||
+        !r.errors.contains(quantity) || !is_means(r))
+      continue;
+    if (scene && scene->geometry.dimension != r.point.scene->geometry.dimension) continue;
+    scene = &*r.point.scene;
+    made_by = fmt::format("flowrest {} on {}", r.version, r.machine);
+    points.push_back(point_json(r, quantity));
+  }
+  if (!scene) throw runs::RunError("the study has no sound run of MPM: there is nothing to keep");
+  return {{"format", "flowrest knowledge"},
+          {"format_version", 1},
+          {"study", results.study.name},
+          {"cut", results.cut},
+          {"scene", results.study.scene},
+          {"kind", scenes::to_string(scene->kind)},
+          {"dimension", scenes::to_string(scene->geometry.dimension)},
+          {"length_m", length_of(*scene)},
+          {"quantity", quantity},
+          {"reference", reference->second.words},
+          {"relative_uncertainty", *reference->second.uncertainty / std::abs(reference->second.value)},
+          {"made_by", made_by},
+          {"made", runs::provenance().value("written", "")},
+          {"points", points}};
+}
+
+Knowledge parse_knowledge(const Json& json) {
+  Knowledge k;
+  k.study = named<std::string>(json, "study");
+  k.cut = named<std::string>(json, "cut");
+  k.scene = named<std::string>(json, "scene");
+  k.quantity = named<std::string>(json, "quantity");
+  k.kind = kind_from(named<std::string>(json, "kind"));
+  k.dimension = dimension_from(named<std::string>(json, "dimension"));
+  k.length = named<double>(json, "length_m");
+  k.uncertainty = named<double>(json, "relative_uncertainty");
+  k.reference = named<std::string>(json, "reference");
+  k.made_by = named<std::string>(json, "made_by") + ", " + named<std::string>(json, "made");
+  const Json points = named<Json>(json, "points");
+  for (const Json& point : points) {
+    KnownPoint p;
+    p.model = scenes::model_from_name(named<std::string>(point, "model"));
+    const Json settings = named<Json>(point, "settings");
+    for (const auto& [key, value] : settings.items()) p.settings.emplace_back(key, value.get<std::string>());
+    p.cell = named<double>(point, "cell_m");
+    p.error = named<double>(point, "relative_error");
+    p.cpu = named<double>(point, "cpu_s");
+    p.work = named<double>(point, "expected_cpu_s");
+    k.points.push_back(std::move(p));
+  }
+  return k;
+}
+
+std::vector<Knowledge> stored_knowledge() {
+  std::vector<Knowledge> all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(scenes::scenes_folder() / "studies", error)) {
+    if (!entry.path().string().ends_with(".known.json")) continue;
+    std::ifstream file(entry.path());
+    try {
+      all.push_back(parse_knowledge(Json::parse(file)));
+    } catch (const std::exception& wrong) {
+      throw runs::RunError(
+          fmt::format("{}: is not what a study keeps: {}", entry.path().string(), wrong.what()));
+    }
+  }
+  return all;
+}
+
+double accuracy_from(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  auto [rest, error] = std::from_chars(text.data(), end, value);
+  while (rest != end && *rest == ' ') ++rest;
+  const bool in_percent = rest != end && *rest == '%';
+  if (in_percent) {
+    value /= 100.0;
+    ++rest;
+  }
+  if (error != std::errc{} || rest != end || !(value > 0.0) || !(value < 1.0))
+    throw scenes::SceneError(
+        fmt::format("--accuracy {}: must be a share such as 2% or 0.02, greater than 0 and less than 1",
+                    scenes::quoted(text)));
+  return value;
+}
+
+double error_by_twin(double value, double twin_value, double coarser) {
+  return std::abs(value - twin_value) / (coarser - 1.0) / std::abs(value);
+}
+
+Choice choose(const std::vector<Knowledge>& all, const scenes::Scene& scene, double accuracy) {
+  const auto candidates = candidates_for(all, scene);
+  if (candidates.empty()) nothing_known(all, scene);
+  const Candidate *cheapest = nullptr, *best = nullptr;
+  for (const Candidate& c : candidates) {
+    if (!best || c.error() < best->error()) best = &c;
+    if (c.error() <= accuracy && (!cheapest || c.point->cpu < cheapest->point->cpu)) cheapest = &c;
+  }
+  if (!cheapest)
+    throw scenes::SceneError(fmt::format(
+        "{}: no settings are known to reach {}: the best that the study {} knows, cells of {:g} m in its "
+        "scene, come "
+        "within {} ({} off a reference that is itself uncertain by {})",
+        scene.path.string(), percent(accuracy), best->knowledge->study, best->point->cell,
+        percent(best->error()), percent(best->point->error), percent(best->knowledge->uncertainty)));
+  const Knowledge& k = *cheapest->knowledge;
+  const KnownPoint& p = *cheapest->point;
+  Choice choice;
+  choice.cell = suited_cell(scene, p.cell * length_of(scene) / k.length);
+  choice.twin_cell = suited_cell(scene, twin_is_coarser * choice.cell);
+  choice.set = settings_with(p, choice.cell);
+  choice.twin_set = settings_with(p, choice.twin_cell);
+  choice.expected_error = cheapest->error();
+  // As much dearer than the known run as the estimates of both say.
+  const double known_over_estimated = p.work > 0.0 ? p.cpu / p.work : 1.0;
+  choice.expected_cpu =
+      known_over_estimated * (scenes::mpm_cost(with_settings(scene, choice.set)).cpu_seconds +
+                              scenes::mpm_cost(with_settings(scene, choice.twin_set)).cpu_seconds);
+  std::string settings;
+  for (const std::string& s : choice.set) settings += (settings.empty() ? "" : ", ") + std::string(s);
+  choice.why = fmt::format(
+      "{}: in {} (study {}{}, {}) cells of {:g} m came within {} of the reference's {} for {} of CPU, and "
+      "the reference "
+      "is uncertain by {}; nothing cheaper is known to reach {}",
+      settings, k.scene, k.study, k.cut.empty() ? "" : ", cut " + k.cut, k.made_by, p.cell, percent(p.error),
+      k.quantity, compare::words::duration(p.cpu), percent(k.uncertainty), percent(accuracy));
+  return choice;
+}
+
+}  // namespace flowrest::studies
