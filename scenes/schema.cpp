@@ -185,6 +185,10 @@ std::vector<Key> mpm_keys() {
              AT(draft.scene.mpm.apic_relaxation_time),
              "time over which the transfer of quadratic-apic smooths velocities once, whatever the step")
           .otherwise("that of a step of CFL 0.75, which is plain APIC"),
+      number("mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
+             "share of the volume by which particles overlap that is taken back per unit of shear strain; 0 "
+             "lets material that is sheared for long sink into itself")
+          .otherwise("1; linear-flip 0.3; always 0 with paper"),
   };
 }
 

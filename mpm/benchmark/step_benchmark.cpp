@@ -1,114 +1,119 @@
-// Whole steps of the material point solver, beside what this machine can do at most.
+// The material point solver's kernels and whole steps, beside what this machine can do at most.
 //
 //   scripts/bench                                   everything
-//   scripts/bench --benchmark_filter=full/44k       one of them
+//   scripts/bench --benchmark_filter=quarter/44k    one of them
+//   scripts/bench --features                        what each feature of a scene costs
 //
-// `particle_steps` is per CPU second; `of_fma` is that rate over the machine's fused multiply-adds per
-// second, measured in the same call, so that figures of different machines can be laid side by side.
+// `particle_steps` is per CPU second; `of_fma` and `of_bandwidth` are its arithmetic (one fused multiply-add
+// a particle-step) and its memory traffic (every byte stored, once) over the machine's limits, measured in
+// the same call, so that figures of different machines can be laid side by side. `*_ns` is wall time per
+// particle-step in each stage.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
-#include "mpm/sampling/sampling.h"
-#include "mpm/solver/settings.h"
+#include "mpm/benchmark/feature_costs.h"
+#include "mpm/benchmark/flowing_slump.h"
+#include "mpm/benchmark/machine_limits.h"
+#include "mpm/material/flow_law.h"
 
 namespace {
 
-using namespace flowrest;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Fused multiply-adds per second of one core in double precision: independent chains, as wide as this
-/// build's vectors.
-double fma_per_second() {
-  typedef double Wide __attribute__((vector_size(64)));
-  Wide chain[8];
-  for (int i = 0; i < 8; ++i) chain[i] = Wide{} + 1.0 + 0.1 * i;
-  const Wide factor = Wide{} + 0.999999999, term = Wide{} + 1e-9;
-  constexpr int rounds = 4'000'000;
-  const double begin = seconds_now();
-  for (int r = 0; r < rounds; ++r)
-    for (auto& c : chain) c = c * factor + term;
-  benchmark::DoNotOptimize(chain);
-  return 8.0 * 8.0 * rounds / (seconds_now() - begin);
-}
-
-/// Bytes per second that one core moves through memory, reading and writing.
-double bytes_per_second() {
-  std::vector<double> from(1 << 24, 1.0), to(1 << 24, 2.0);
-  const double begin = seconds_now();
-  for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i] * 1.5;
-  benchmark::DoNotOptimize(to.data());
-  return 16.0 * static_cast<double>(from.size()) / (seconds_now() - begin);
-}
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::bench;
 
 struct Case {
   std::string name;
   std::vector<std::string> set;
 };
 
-/// Steps of a slump in full flow: the state after `warm_up` s, so that particles are no longer a lattice.
-void steps(benchmark::State& state, const Case& c, double fma, double bandwidth) {
-  scenes::Overrides overrides;
-  overrides.set = c.set;
-  const scenes::Scene scene = scenes::load_scene("roussel-slump", overrides);
-  const auto settings = mpm::settings_of(scene);
-  const auto solver = mpm::make_solver(settings, mpm::seed_particles(scene));
-  const double step = 0.5 * settings.cell / scene.material.longitudinal_speed();
-  double time = 0.0;
-  const auto advance = [&] {
-    solver->step(step, mpm::acceleration_at(scene, time));
-    time += step;
+void steps(benchmark::State& state, const Case& c, const Limits& limits) {
+  FlowingSlump slump(c.set);
+  const StageTimes before = slump.solver().stage_times();
+  for (auto _ : state) slump.advance();
+  const StageTimes& after = slump.solver().stage_times();
+  using benchmark::Counter;
+  const double particle_steps = slump.particles() * static_cast<double>(state.iterations());
+  const double bytes = static_cast<double>(slump.solver().bytes());
+  const auto stage_ns = [&](double StageTimes::*stage) {
+    return (after.*stage - before.*stage) / particle_steps * 1e9;
   };
-  for (int i = 0; i < 60; ++i) advance();
-  for (auto _ : state) advance();
-  const auto particles = static_cast<double>(solver->particle_count());
-  state.counters["particle_steps"] =
-      benchmark::Counter(particles * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-  state.counters["particles"] = particles;
-  state.counters["bytes_per_particle"] = static_cast<double>(solver->bytes()) / particles;
-  state.counters["fma_per_s"] = fma;
-  state.counters["bytes_per_s"] = bandwidth;
-  state.counters["of_fma"] = benchmark::Counter(particles * static_cast<double>(state.iterations()) / fma,
-                                                benchmark::Counter::kIsRate);
+  state.counters["particles"] = slump.particles();
+  state.counters["particle_steps"] = Counter(particle_steps, Counter::kIsRate);
+  state.counters["of_fma"] = Counter(particle_steps / limits.fma, Counter::kIsRate);
+  state.counters["of_bandwidth"] =
+      Counter(bytes * static_cast<double>(state.iterations()) / limits.bandwidth, Counter::kIsRate);
+  state.counters["bytes_per_particle"] = bytes / slump.particles();
+  state.counters["p2g_ns"] = stage_ns(&StageTimes::particles_to_grid);
+  state.counters["nodes_ns"] = stage_ns(&StageTimes::nodes);
+  state.counters["g2p_ns"] = stage_ns(&StageTimes::grid_to_particles);
+  state.counters["sort_ns"] = stage_ns(&StageTimes::sorting);
+}
+
+/// The return of a law alone, on states around yield that fit in the first-level cache.
+template <class Law>
+void return_map(benchmark::State& state, const Limits& limits) {
+  constexpr int count = 512;
+  std::vector<double> trial(count), stress(count), rate(count), lambda(count, 0.5);
+  for (int i = 0; i < count; ++i) trial[static_cast<std::size_t>(i)] = 150.0 * i / count;
+  FlowParameters<double> flow;
+  flow.yield_stress = 50.0;
+  flow.plastic_viscosity = 50.0;
+  flow.flocculation_growth = 0.4;
+  flow.deflocculation = 0.15;
+  for (auto _ : state) {
+#pragma omp simd
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto r = Law::template relax<double>(flow, trial[i], 20.0, 5e-4, lambda[i], 0.0);
+      stress[i] = r.stress;
+      rate[i] = r.rate;
+    }
+    benchmark::DoNotOptimize(stress.data());
+    benchmark::DoNotOptimize(rate.data());
+    benchmark::ClobberMemory();
+  }
+  const double returns = count * static_cast<double>(state.iterations());
+  state.counters["returns"] = benchmark::Counter(returns, benchmark::Counter::kIsRate);
+  state.counters["of_fma"] = benchmark::Counter(returns / limits.fma, benchmark::Counter::kIsRate);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto& [size, base] : {std::pair{"44k", quarter_44k()}, std::pair{"1M", quarter_1m()}})
+    for (const char* scheme : {"quadratic-apic", "linear-flip"})
+      for (const char* precision : {"double", "float"})
+        all.push_back(
+            {std::string("quarter/") + size + "/" + scheme + "/" + precision,
+             with(base, {std::string("mpm.scheme=") + scheme, std::string("mpm.precision=") + precision})});
+  all.push_back({"axisymmetric/2k/quadratic-apic/double", {"mpm.threads=1"}});
+  all.push_back({"axisymmetric/33k/quadratic-apic/double", {"mpm.threads=1", "mpm.cell=0.0025"}});
+  return all;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double fma = fma_per_second(), bandwidth = bytes_per_second();
-  const std::vector<std::string> quarter_44k = {"geometry.dimension=quarter", "mpm.cell=0.0063",
-                                                "mpm.particles_per_cell=8", "mpm.threads=1"};
-  const std::vector<std::string> quarter_1m = {"geometry.dimension=quarter", "mpm.cell=0.0022",
-                                               "mpm.particles_per_cell=8", "mpm.threads=1"};
-  std::vector<Case> cases;
-  for (const auto& [size, base] : {std::pair{"44k", quarter_44k}, std::pair{"1M", quarter_1m}})
-    for (const char* scheme : {"quadratic-apic", "linear-flip"})
-      for (const char* precision : {"double", "float"}) {
-        Case c{std::string("quarter/") + size + "/" + scheme + "/" + precision, base};
-        c.set.push_back(std::string("mpm.scheme=") + scheme);
-        c.set.push_back(std::string("mpm.precision=") + precision);
-        cases.push_back(c);
-      }
-  cases.push_back({"quarter/44k/quadratic-apic/double/papanastasiou", quarter_44k});
-  cases.back().set.push_back("material.model=papanastasiou");
-  cases.push_back({"quarter/44k/quadratic-apic/double/thixotropic", quarter_44k});
-  for (const char* key : {"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15",
-                          "thixotropy.initial_flocculation=0.5"})
-    cases.back().set.push_back(key);
-  cases.push_back({"axisymmetric/2k/quadratic-apic/double", {"mpm.threads=1"}});
-  cases.push_back({"axisymmetric/33k/quadratic-apic/double", {"mpm.threads=1", "mpm.cell=0.0025"}});
-  for (const auto& c : cases)
-    benchmark::RegisterBenchmark(c.name.c_str(), [c, fma, bandwidth](benchmark::State& s) {
-      steps(s, c, fma, bandwidth);
+  if (argc == 2 && std::strcmp(argv[1], "--features") == 0) {
+    print_feature_costs();
+    return 0;
+  }
+  const Limits limits;
+  std::printf("one core of this machine: %.3g fused multiply-adds/s in double precision, %.3g bytes/s\n",
+              limits.fma, limits.bandwidth);
+  const auto add_return = [&](const char* name, void (*run)(benchmark::State&, const Limits&)) {
+    benchmark::RegisterBenchmark(name, [run, limits](benchmark::State& s) { run(s, limits); });
+  };
+  add_return("return_map/elasto-viscoplastic", return_map<ElastoViscoplastic<false>>);
+  add_return("return_map/elasto-viscoplastic/thixotropic", return_map<ElastoViscoplastic<true>>);
+  add_return("return_map/bi-viscous", return_map<BiViscous<false>>);
+  for (const auto& c : cases())
+    benchmark::RegisterBenchmark(c.name.c_str(), [c, limits](benchmark::State& s) {
+      steps(s, c, limits);
     })->Unit(benchmark::kMillisecond);
   benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

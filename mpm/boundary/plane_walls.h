@@ -80,7 +80,8 @@ void correct_wall_transfer(T* arena, const BlockView& block, const AxisBounds* b
 }
 
 /// Sets the velocities that plane walls prescribe. Quadratic: the ghost node mirrors the first one inside.
-/// Linear: the node on the wall itself is held.
+/// Linear: the node on the wall itself is held. Filling is even across every wall: a linear node on a wall
+/// sees half of its volume.
 template <class T, int Dim, class Shape>
 void set_wall_velocities(T* arena, const BlockView& block, const AxisBounds* bounds) {
   constexpr bool mirrored = Shape::nodes == 3;
@@ -94,6 +95,8 @@ void set_wall_velocities(T* arena, const BlockView& block, const AxisBounds* bou
       if (mirrored ? (cell < 0 || cell >= block_edge) : (face < 0 || face > block_edge)) continue;
       const int held = mirrored ? (side == 0 ? cell : cell + 2) : face;
       across_layers<Dim>(a, held, mirrored ? cell + 1 : held, [&](int node, int image) {
+        T* filling = arena + node * node_values + record;
+        *filling = mirrored ? arena[image * node_values + record] : T(2) * *filling;
         for (int r = 0; r < node_values / record; ++r)
           for (int c = 0; c < Dim; ++c) {
             T& value = arena[node * node_values + r * record + 1 + c];

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "mpm/output/averaged_pressure.h"
 #include "mpm/output/hdf5_file.h"
+#include "mpm/solver/settings.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::mpm {
@@ -23,7 +25,10 @@ void append(std::vector<float>& to, const std::vector<double>& from) {
 
 SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const scenes::Scene& scene,
                                double resume_time)
-    : directory_(directory), duct_(scene.kind == scenes::Kind::duct), dimension_(scene.spatial_dimension()) {
+    : directory_(directory),
+      cell_(cell_size(scene)),
+      duct_(scene.kind == scenes::Kind::duct),
+      dimension_(scene.spatial_dimension()) {
   std::filesystem::create_directories(directory_);
   std::ifstream file(directory_ / "particles.hdf.series");
   const auto series = nlohmann::json::parse(file, nullptr, false);
@@ -35,6 +40,8 @@ SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const sce
 
 void SnapshotWriter::write(double time, Solver& solver) {
   std::vector<float> points, velocity, rate, stress, pressure, raw_pressure, volume, flocculation;
+  AveragedPressure averaged(dimension_, cell_);
+  solver.visit([&](const ParticleBatch& batch) { averaged.add(batch); });
   solver.visit([&](const ParticleBatch& batch) {
     for (std::size_t i = 0; i < batch.count; ++i)
       for (auto [to, from] : {std::pair{&points, &batch.position}, std::pair{&velocity, &batch.velocity}}) {
@@ -45,7 +52,7 @@ void SnapshotWriter::write(double time, Solver& solver) {
       }
     append(rate, batch.rate);
     append(stress, batch.shear_stress);
-    append(pressure, batch.pressure);
+    append(pressure, averaged.at(batch));
     append(raw_pressure, batch.raw_pressure);
     append(volume, batch.volume);
     append(flocculation, batch.flocculation);

@@ -9,8 +9,8 @@ namespace flowrest::mpm {
 
 /// Writes the particles as VTKHDF 1.0 UnstructuredGrid, `particles_NNNNNN.hdf`, and brings
 /// `particles.hdf.series`, which ParaView opens as a time series, up to date. Points (m) carry velocity
-/// (m/s), shear_rate (1/s), shear_stress, pressure and raw_pressure (Pa), volume (m3) and, where thixotropic,
-/// flocculation. Axisymmetric and plane sections lie in x-z.
+/// (m/s), shear_rate (1/s), shear_stress, pressure (averaged, see AveragedPressure) and raw_pressure (Pa),
+/// volume (m3) and, where thixotropic, flocculation. Axisymmetric and plane sections lie in x-z.
 class SnapshotWriter {
  public:
   /// `directory` is made if it is missing; snapshots after `resume_time` are dropped from the series.
@@ -21,6 +21,7 @@ class SnapshotWriter {
   void write_series() const;
 
   std::filesystem::path directory_;
+  double cell_ = 0.0;
   bool duct_ = false;
   int dimension_ = 2;
   std::vector<std::pair<std::string, double>> series_;

@@ -35,6 +35,7 @@ struct StepParameters {
   T density{};          ///< kg/m3, initial
   T acceleration[3]{};  ///< m/s2, of gravity and body force
   T keep{};             ///< share of the particle's own velocity (and APIC's affine part) kept over the step
+  T density_correction{};  ///< share of an overlap of particles taken back per unit strain
   FlowParameters<T> flow;
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;

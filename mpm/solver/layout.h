@@ -16,8 +16,9 @@ constexpr int cells_per_block = power(block_edge, Dim);
 template <int Dim>
 constexpr int nodes_per_arena = power(arena_edge, Dim);
 
-/// Node records are four wide, and a node has two: in arenas (mass, momentum) and (0, impulse of the step's
-/// forces), in nodes (mass, new velocity) and (0, new velocity - keep * old velocity).
+/// Node records are four wide, and a node has two: in arenas (mass, momentum) and (filling, impulse of the
+/// step's forces), in nodes (mass, new velocity) and (filling, new velocity - keep * old velocity). Filling
+/// is the particles' volume per volume of the node: 1 where they neither overlap nor gape.
 constexpr int record = 4;
 constexpr int node_values = 2 * record;
 

@@ -25,6 +25,11 @@ PlaneWall wall_of(scenes::Wall wall) {
   return wall == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip;
 }
 
+double density_correction(const scenes::Mpm& mpm) {
+  if (mpm.scheme == scenes::Scheme::paper) return 0.0;
+  return mpm.density_correction.value_or(mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3);
+}
+
 std::array<AxisBounds, 3> bounds_of(const scenes::Scene& scene) {
   std::array<AxisBounds, 3> bounds{};
   const auto vertical = static_cast<std::size_t>(vertical_axis(scene));
@@ -85,6 +90,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.density = m.density;
   // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
+  s.density_correction = density_correction(scene.mpm);
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);

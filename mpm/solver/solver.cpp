@@ -133,6 +133,7 @@ class SolverOf final : public Solver {
     p.stress_rate = settings.stress_rate;
     p.dilatation = settings.dilatation;
     p.explicit_fluid = settings.explicit_fluid;
+    p.density_correction = static_cast<T>(settings.density_correction);
     for (std::size_t a = 0; a < 3; ++a) p.bounds[a] = settings.bounds[a];
     // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep
     // every real contribution and large enough that its inverse stays finite.
@@ -291,12 +292,11 @@ class SolverOf final : public Solver {
     for (auto& a : batch.position) a.assign(count, 0.0);
     for (auto& a : batch.velocity) a.assign(count, 0.0);
     for (auto* a : {&batch.mass, &batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure,
-                    &batch.pressure, &batch.elastic_energy})
+                    &batch.elastic_energy})
       a->resize(count);
     batch.flocculation.resize(v.lambda ? count : 0);
     for (int cell = 0; cell < cells; ++cell) {
       const int in_block[3] = {dim == 3 ? cell / 16 : cell / 4, dim == 3 ? cell / 4 % 4 : cell % 4, cell % 4};
-      double thrust = 0.0, total = 0.0;
       for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) {
         const std::uint32_t p = block.list[i];
         for (int a = 0; a < dim; ++a) {
@@ -316,11 +316,7 @@ class SolverOf final : public Solver {
                                                       : batch.shear_stress[i] * batch.shear_stress[i] /
                                                             (2.0 * settings_.state.at(ratio).shear) * ratio;
         batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + settings_.state.energy(ratio));
-        thrust += batch.raw_pressure[i] * batch.volume[i];
-        total += batch.volume[i];
       }
-      for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i)
-        batch.pressure[i] = thrust / total;
     }
   }
 

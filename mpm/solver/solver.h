@@ -25,6 +25,7 @@ struct SolverSettings {
   double cell = 0.0;                  ///< m
   double density = 0.0;               ///< kg/m3
   double flip_relaxation_time = 0.0;  ///< s; infinite for pure FLIP
+  double density_correction = 0.0;    ///< share of an overlap of particles taken back per unit strain
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
@@ -59,7 +60,6 @@ struct ParticleBatch {
   std::vector<double> rate;                     ///< 1/s, plastic (EVP) or total (fluid) shear rate
   std::vector<double> shear_stress;             ///< Pa, the invariant
   std::vector<double> raw_pressure;             ///< Pa, of the particle's own volume
-  std::vector<double> pressure;                 ///< Pa, averaged over the cell: the one that acts
   std::vector<double> flocculation;             ///< empty without thixotropy
   std::vector<double> elastic_energy;           ///< J, of shape and volume
 };
@@ -84,8 +84,8 @@ class Solver {
   /// Advances by `step` seconds under a uniform acceleration (m/s2, per axis of the solver).
   /// @throws runs::NumericsError where a particle moved further than a cell or is not finite.
   virtual StepResult step(double step, const std::array<double, 3>& acceleration) = 0;
-  /// Sets the time over which APIC's transfer smooths velocities once, s; zero, as a solver starts, for once a
-  /// step. Linear transfers have their own, fixed one.
+  /// Sets the time over which APIC's transfer smooths velocities once, s; zero, as a solver starts, for once
+  /// a step. Linear transfers have their own, fixed one.
   virtual void set_apic_relaxation_time(double) = 0;
   /// Calls `use` for every block in turn.
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;

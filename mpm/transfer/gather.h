@@ -99,6 +99,38 @@ void gather(const T* arena_cell, int node_stride, const T* const* position, cons
   }
 }
 
+/// Interpolates the nodes' filling, the first number of the records at `arena_cell`, to the particles
+/// [first, first + count) of one cell.
+template <class T, int Dim, class Shape>
+void gather_filling(const T* arena_cell, int node_stride, const Weights<T, Dim, Shape>& w, int first,
+                    int count, T* filling) {
+  constexpr int nodes = Shape::nodes;
+  constexpr int lanes = static_cast<int>(sizeof(Lanes<T>) / sizeof(T));
+  constexpr int last = Dim - 1;
+  using L = Lanes<T>;
+  for (int q = first; q < first + count; q += lanes) {
+    L value = {};
+#pragma GCC unroll 3
+    for (int i = 0; i < nodes; ++i) {
+      L plane = {};
+#pragma GCC unroll 3
+      for (int j = 0; j < (Dim == 3 ? nodes : 1); ++j) {
+        const T* node = arena_cell + arena_index<Dim>(i, j, 0) * node_stride;
+        L line = {};
+#pragma GCC unroll 3
+        for (int k = 0; k < nodes; ++k) line += lanes_at(w.weight[last][k] + q) * node[k * node_stride];
+        if constexpr (Dim == 3) {
+          plane += lanes_at(w.weight[1][j] + q) * line;
+        } else {
+          plane = line;
+        }
+      }
+      value += lanes_at(w.weight[0][i] + q) * plane;
+    }
+    lanes_at(filling + q) = value;
+  }
+}
+
 template <class T, int Dim>
 Gathered<T, Dim> room_for_gathered(Tile<T, Dim>& tile, bool value, bool gradient, bool affine) {
   Gathered<T, Dim> g{};

@@ -53,10 +53,23 @@ void refer_to_midpoint(const StepParameters<T>& step, const Strain<T, Dim>& s, i
   }
 }
 
+/// Takes back what particles overlap. A sum over a cell's particles is not an integral over the cell: where
+/// material is sheared for long, particles drift together while the divergence they see is zero, and the body
+/// sinks into itself unnoticed by the volume they carry. A particle whose surroundings are fuller than full
+/// is told that it is compressed, at a rate in proportion to the shearing that drives the drift, so that what
+/// is at rest stays so; its pressure then makes room. Gaps are left alone: under a free surface they are
+/// there by right, and closing them pulls a thin front back.
+template <class T, int Dim>
+void correct_density(const StepParameters<T>& step, const Strain<T, Dim>& s, const T* filling, int count) {
+#pragma omp simd
+  for (int q = 0; q < count; ++q)
+    s.dilatation[q] -= step.density_correction * s.rate[q] * maximum(filling[q] - T(1), T(0));
+}
+
 /// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
-                 const Gathered<T, Dim>& gathered, const T* mass, Strain<T, Dim>& s) {
+                 const Gathered<T, Dim>& gathered, const T* mass, const T* filling, Strain<T, Dim>& s) {
   const int count = tile.count;
   const T per_cell = T(1) / step.cell;
   for (int i = 0; i < Dim; ++i)
@@ -88,6 +101,7 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     volume[q] = mass[q] * s.ratio[q];
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
+  if (filling) correct_density<T, Dim>(step, s, filling, count);
   average_over_cells(tile, volume, s.dilatation);
 }
 
@@ -99,7 +113,6 @@ void update_stress(const StepParameters<T>& step, const ParticleView<T>& particl
   const int count = tile.count;
   for (int c = 0; c < components; ++c) s.deviator[c] = tile.open(particles.deviator[c]);
   s.pressure = tile.fresh();
-  s.rate = tile.open(particles.rate);
   const bool thixotropic = particles.lambda != nullptr;
   s.lambda = thixotropic ? tile.open(particles.lambda) : nullptr;
   s.shear = tile.fresh();
@@ -184,12 +197,13 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
 /// Strain, stress and motion of a tile whose velocity gradients per cell are gathered.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
-                     const T* arena, T* const* x, const Gathered<T, Dim>& gathered,
-                     const T* const* advection) {
+                     const T* arena, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection,
+                     const T* filling) {
   Strain<T, Dim> s;
   const T* mass = tile.open(particles.mass);
   s.ratio = tile.open(particles.volume_ratio);
-  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, s);
+  s.rate = tile.open(particles.rate);
+  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, filling, s);
   update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
   move_particles<T, Dim, Shape>(step, particles, tile, x, advection, mass);
 }
@@ -221,6 +235,7 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     weights.make(tile, x);
     const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, true, true, false);
     const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, true, false, true);
+    T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
@@ -228,6 +243,7 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       gather<T, Dim, Quadratic, true, true, false>(base, node_values, x, weights, first, n, motion);
       gather<T, Dim, Quadratic, true, false, true>(base + record, node_values, x, weights, first, n,
                                                    increment);
+      if (filling) gather_filling<T, Dim, Quadratic>(base + record, node_values, weights, first, n, filling);
     }
     relax_velocities<T, Dim>(step, increment.value, v, tile.count);
     for (int c = 0; c < Dim; ++c) {
@@ -239,7 +255,8 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
         tile.close(particles.affine[c * Dim + a], affine);
       }
     }
-    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value);
+    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value,
+                                                     filling);
   }
 }
 
@@ -301,12 +318,15 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
     Weights<T, Dim, Linear> weights;
     weights.make(tile, x);
     const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, Axisymmetric, true, false);
-    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
-      if (tile.cell_count(cell) > 0)
-        gather<T, Dim, Linear, Axisymmetric, true, false>(arena + cell_base<T, Dim>(cell) * node_values,
-                                                          node_values, x, weights, tile.cell_first(cell),
-                                                          tile.cell_count(cell), g);
-    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection);
+    T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
+    for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+      const int n = tile.cell_count(cell), first = tile.cell_first(cell);
+      if (n == 0) continue;
+      const T* base = arena + cell_base<T, Dim>(cell) * node_values;
+      gather<T, Dim, Linear, Axisymmetric, true, false>(base, node_values, x, weights, first, n, g);
+      if (filling) gather_filling<T, Dim, Linear>(base + record, node_values, weights, first, n, filling);
+    }
+    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection, filling);
   }
 }
 

@@ -6,8 +6,8 @@
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// Sums the arenas that share a block of nodes, in a fixed order, and turns momentum into velocity. Records
-/// after it: (mass, new velocity), (0, new velocity - keep * old velocity). With Remap only the first is
-/// there.
+/// after it: (mass, new velocity), (filling, new velocity - keep * old velocity). With Remap the second
+/// stays as it was.
 template <class T, int Dim, bool Remap>
 void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
   constexpr int records = Remap ? 1 : 2;
@@ -37,7 +37,7 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
       const Record<T> velocity = (sum[0] + sum[1]) * per_mass;
       record_at(out + node * node_values) = velocity;
       record_at(out + node * node_values + record) = velocity - sum[0] * (step.keep * per_mass);
-      out[node * node_values + record] = T(0);
+      out[node * node_values + record] = sum[1][0];
     }
     out[node * node_values] = mass;
   }

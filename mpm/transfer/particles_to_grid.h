@@ -64,8 +64,8 @@ void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms, 
   }
 }
 
-/// Mass, momentum and the impulse of the step's forces of one block's particles, into that block's arena:
-/// per node (mass, momentum) and (0, impulse).
+/// Mass, momentum, volume and the impulse of the step's forces of one block's particles, into that block's
+/// arena: per node (mass, momentum) and (filling, impulse).
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles,
                        const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
@@ -113,6 +113,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
     Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
     static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 30 <= workspace_arrays);
     const T dt = step.step, impulse_per_cell = dt / step.cell;
+    const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
+    const T per_cell_volume = T(1) / (circle * (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell);
     const std::uint32_t* list = block.list + tile.first;
     for (int q = 0; q < count; ++q) {
       const std::uint32_t id = list[q];
@@ -125,10 +127,12 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       }
       const T p = centroid ? T(0) : pressure[q];
       const T m = mass[q], scale = -volume[q] * impulse_per_cell;
-      const Record<T> push = {T(0), m * dt * step.acceleration[0], m * dt * step.acceleration[1],
-                              Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
-      Record<T> forcing = push;
-      if constexpr (Axisymmetric) forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+      Record<T> forcing = {volume[q] * per_cell_volume, m * dt * step.acceleration[0],
+                           m * dt * step.acceleration[1], Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
+      if constexpr (Axisymmetric) {
+        forcing[0] *= per_radius[q];
+        forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+      }
       Sources& source = sources[q];
       record_at(source.value) = Record<T>{m, m * particles.velocity[0][id], m * particles.velocity[1][id],
                                           Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "mpm/output/averaged_pressure.h"
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/test_runs.h"
 #include "mpm/solver/settings.h"
@@ -36,7 +37,7 @@ TEST(Column, AtRestItsAveragedPressureIsTheWeightAbove) {
         Row& row = rows[static_cast<int>(b.position[1][i] / s.cell)];
         row.mass += b.mass[i];
         row.volume += b.volume[i];
-        row.thrust += b.volume[i] * b.pressure[i];
+        row.thrust += b.volume[i] * b.raw_pressure[i];
       }
     });
     const double bottom = s.density * 9.81 * high * s.cell;
@@ -56,6 +57,47 @@ TEST(Column, AtRestItsAveragedPressureIsTheWeightAbove) {
   }
 }
 
+TEST(Column, ThePressureWrittenOutIsSmooth) {
+  // Jittered particles in a column: averages over cells alternate by a few per cent of the pressure at the
+  // bottom, and what is written does not. The outermost half cells are left out. Measured: 1.2 % and 1.5 %,
+  // of the raw pressure 5 % and 13 %.
+  for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip}) {
+    const int across = 8, high = 20;
+    SolverSettings s = concrete({2, false, transfer, false});
+    s.law = Law::newtonian;
+    s.flow.plastic_viscosity = 500.0;
+    s.bounds[0] = {PlaneWall::slip, PlaneWall::slip, 0, across, false};
+    s.bounds[1].lower = PlaneWall::slip;
+    Random random(11);
+    auto solver = make_solver(s, block(s, {0, 0, 0}, {across, high, 0}, 4, &random));
+    for (int i = 0; i < 4000; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
+    AveragedPressure averaged(2, s.cell);
+    solver->visit([&](const ParticleBatch& b) { averaged.add(b); });
+    double top = 0.0, raw = 0.0, smooth = 0.0;
+    solver->visit([&](const ParticleBatch& b) {
+      for (const double y : b.position[1]) top = std::max(top, y);
+    });
+    std::size_t count = 0;
+    solver->visit([&](const ParticleBatch& b) {
+      const auto pressure = averaged.at(b);
+      for (std::size_t i = 0; i < b.count; ++i) {
+        const double y = b.position[1][i];
+        if (y < 0.5 * s.cell || y > top - 1.5 * s.cell) continue;
+        const double weight = s.density * 9.81 * (top - y);
+        raw += std::pow(b.raw_pressure[i] - weight, 2);
+        smooth += std::pow(pressure[i] - weight, 2);
+        ++count;
+      }
+    });
+    const double bottom = s.density * 9.81 * top;
+    raw = std::sqrt(raw / static_cast<double>(count)) / bottom;
+    smooth = std::sqrt(smooth / static_cast<double>(count)) / bottom;
+    std::printf("    mean error %.2g of the pressure at the bottom, of the raw pressure %.2g\n", smooth, raw);
+    EXPECT_LT(smooth, 0.02);
+    EXPECT_GT(raw, 2.0 * smooth) << "there was nothing to smooth";
+  }
+}
+
 namespace {
 
 /// The Roussel slump on cells of 20 mm, to rest.
@@ -67,7 +109,7 @@ scenes::Scene coarse_slump(const std::vector<std::string>& more = {}) {
 }  // namespace
 
 // Produced by the run that ComesToRestWhereItDidWhenThisWasWritten makes.
-constexpr double stored_spread_mm = 556.41, stored_height_mm = 45.07, stored_rest_s = 22.15;
+constexpr double stored_spread_mm = 558.49, stored_height_mm = 44.84, stored_rest_s = 24.40;
 
 class Slump : public RunTest {};
 

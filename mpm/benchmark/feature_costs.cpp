@@ -1,0 +1,119 @@
+#include "mpm/benchmark/feature_costs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "mpm/benchmark/flowing_slump.h"
+#include "mpm/benchmark/machine_limits.h"
+#include "mpm/output/run.h"
+
+namespace flowrest::mpm::bench {
+
+namespace {
+
+constexpr int turns = 15, steps_per_turn = 12;
+
+struct Paired {
+  double first_ns = 0.0, ratio = 0.0;  ///< per particle-step of the first; second over first
+};
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double time_of(FlowingSlump& slump, double (*clock)()) {
+  const double begin = clock();
+  for (int i = 0; i < steps_per_turn; ++i) slump.advance();
+  return (clock() - begin) / (steps_per_turn * slump.particles()) * 1e9;
+}
+
+Paired compare(FlowingSlump without, FlowingSlump with_it, double (*clock)() = cpu_seconds) {
+  std::vector<double> first, ratio;
+  for (int turn = 0; turn < turns; ++turn) {
+    first.push_back(time_of(without, clock));
+    ratio.push_back(time_of(with_it, clock) / first.back());
+  }
+  return {median(first), median(ratio)};
+}
+
+void print(const char* what, const Paired& p) {
+  std::printf("  %-64s %7.1f ns  x %.2f\n", what, p.first_ns, p.ratio);
+  std::fflush(stdout);
+}
+
+/// CPU seconds of a whole short run with its outputs.
+double run_seconds(const std::vector<std::string>& set) {
+  scenes::Overrides overrides;
+  overrides.set = set;
+  const scenes::Scene scene = scenes::load_scene("roussel-slump", overrides);
+  const auto directory = std::filesystem::temp_directory_path() / "flowrest-feature-costs";
+  std::filesystem::remove_all(directory);
+  RunOptions options;
+  options.directory = directory;
+  options.quiet = true;
+  const double begin = cpu_seconds();
+  run(scene, options);
+  const double seconds = cpu_seconds() - begin;
+  std::filesystem::remove_all(directory);
+  return seconds;
+}
+
+void print_output_costs() {
+  const std::vector<std::string> silent = {"mpm.threads=1",
+                                           "time.end=2",
+                                           "output.history_interval=2",
+                                           "output.profile_interval=2",
+                                           "output.snapshot_interval=2",
+                                           "output.checkpoint_interval=2"};
+  const std::pair<const char*, const char*> features[] = {
+      {"gauges every 50 ms, axisymmetric 10 mm", "output.history_interval=0.05"},
+      {"profiles every 0.25 s", "output.profile_interval=0.25"},
+      {"snapshots every second", "output.snapshot_interval=1"},
+      {"checkpoints every second", "output.checkpoint_interval=1"}};
+  for (const auto& [what, key] : features) {
+    std::vector<double> first, ratio;
+    for (int turn = 0; turn < 5; ++turn) {
+      first.push_back(run_seconds(silent));
+      ratio.push_back(run_seconds(with(silent, {key})) / first.back());
+    }
+    std::printf("  %-64s %7.2f s   x %.2f\n", what, median(first), median(ratio));
+  }
+}
+
+}  // namespace
+
+void print_feature_costs() {
+  const auto base = quarter_44k();
+  const auto added = [&](const std::vector<std::string>& more) {
+    return compare(FlowingSlump(base), FlowingSlump(with(base, more)));
+  };
+  std::printf("what a feature costs (without it, CPU time per particle-step; factor with it)\n");
+  print("density correction",
+        compare(FlowingSlump(with(base, {"mpm.density_correction=0"})), FlowingSlump(base)));
+  print("thixotropy", added({"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15",
+                             "thixotropy.initial_flocculation=0.5"}));
+  print("Papanastasiou's law for the elasto-viscoplastic one", added({"material.model=papanastasiou"}));
+  print("linear-flip for quadratic-apic", added({"mpm.scheme=linear-flip"}));
+  print("double for float", compare(FlowingSlump(with(base, {"mpm.precision=float"})), FlowingSlump(base)));
+  print("B-bar by cell average for the centroid's",
+        compare(FlowingSlump(base, [](SolverSettings& s) { s.dilatation = Dilatation::centroid; }),
+                FlowingSlump(base)));
+  print("the third dimension (per particle-step, for axisymmetric)",
+        compare(FlowingSlump({"mpm.threads=1", "mpm.cell=0.0025"}), FlowingSlump(base)));
+  print("a second thread (wall time)",
+        compare(FlowingSlump(base), FlowingSlump(with(base, {"mpm.threads=2"})), wall_seconds));
+  print(
+      "a second thread, a million particles (wall time)",
+      compare(FlowingSlump(quarter_1m()), FlowingSlump(with(quarter_1m(), {"mpm.threads=2"})), wall_seconds));
+  print_output_costs();
+}
+
+}  // namespace flowrest::mpm::bench
