@@ -162,7 +162,7 @@ Case column(const Variant& v) {
         Row& row = rows[static_cast<int>(b.position[1][i] / s.cell)];
         row.mass += b.mass[i];
         row.volume += b.volume[i];
-        row.thrust += b.volume[i] * b.pressure[i];
+        row.thrust += b.volume[i] * b.raw_pressure[i];
       }
     });
     const double bottom = s.density * gravity * high * s.cell;
