@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "runs/process.h"
+#include "runs/run_directory.h"
 
 using namespace flowrest;
 namespace fs = std::filesystem;
@@ -132,4 +133,31 @@ TEST_F(StudyCommand, ARunThatTakesTooLongIsStoppedAndSaid) {
                                        << "[settings]\nmpm.cell = 0.0025\n[[sweep]]\nname = \"MPM\"\n";
   ASSERT_TRUE(study("out").good()) << log();
   EXPECT_EQ(found("out")[0][1], "too long");
+}
+
+TEST_F(StudyCommand, AFullDiskEndsARunWithAReasonAndLeavesNoneThatCounts) {
+  // A limit on the size of files stands in for the disk; writing past it fails as on a full one.
+  for (const int blocks : {1, 8, 16, 64}) {
+    const fs::path run = folder / ("run-" + std::to_string(blocks));
+    const std::string command = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec '" +
+                                program.string() +
+                                "' mpm roussel-slump --set mpm.cell=0.02 --set time.end=1 --set "
+                                "time.stop_at_rest=false --set output.history_interval=0.001 --quiet -o '" +
+                                run.string() + "'";
+    runs::Process process("/bin/bash", {"-c", command}, folder, "/dev/null", {});
+    const auto end = process.wait(120.0);
+    ASSERT_TRUE(end);
+    EXPECT_FALSE(end->good()) << blocks;
+    EXPECT_EQ(end->signal, 0) << end->how();
+    if (!fs::exists(run / "run.json")) continue;
+    const auto status = runs::read_run(run).status();
+    EXPECT_NE(status, runs::Status::end_time) << blocks;
+    EXPECT_NE(status, runs::Status::at_rest) << blocks;
+  }
+}
+
+TEST_F(StudyCommand, AFolderThatCannotBeWrittenIsSaidAndNothingIsRun) {
+  std::ofstream(folder / "out") << "a file in the way";
+  EXPECT_EQ(study("out").exit_code, 2);
+  EXPECT_NE(log().find("cannot be written"), std::string::npos) << log();
 }

@@ -27,10 +27,18 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Errors are reported by our own messages. Every file is closed here, whatever happens; at exit the library
+/// would close once more those whose last bytes found no room on the disk, and fall over them.
+void prepare_library() {
+  static const herr_t prepared = H5dont_atexit();
+  static_cast<void>(prepared);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 }  // namespace
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by our own messages
+  prepare_library();
   Hdf5File file;
   file.path_ = path;
   file.temporary_ = path.string() + ".part";
@@ -40,7 +48,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  prepare_library();
   Hdf5File file;
   file.path_ = path;
   file.file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
