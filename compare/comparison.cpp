@@ -9,6 +9,7 @@
 #include "compare/measures/run_measures.h"
 #include "compare/pairs.h"
 #include "compare/run_view.h"
+#include "compare/square.h"
 
 namespace flowrest::compare {
 
@@ -174,7 +175,10 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
 
   for (RunView& view : comparison.runs) measure(view, comparison);
   measure_overshoot(comparison);
+  measure_uncertainty(comparison);
   compare_pairs(comparison);
+  fill_square(comparison);
+  note_missing(comparison);
   describe(comparison);
   return comparison;
 }

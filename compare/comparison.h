@@ -18,7 +18,7 @@ namespace flowrest::compare {
 struct Options {
   double rest_shear_rate = 0.05;   ///< 1/s: at rest once the 99th percentile of the shear rate stays below
   double rest_spread_rate = 5e-4;  ///< m/s: at rest once the spread grows by less
-  double still_speed = 1e-4;       ///< m/s: a law that can rest, and spreads slower than this, has come to rest
+  double still_speed = 1e-4;  ///< m/s: a law that can rest, and spreads slower than this, has come to rest
   double rest_velocity_fraction = 0.01;  ///< of a duct's largest plug velocity: stopped once it stays below
   double rate_window = 2.0;              ///< s, over which rates are taken
   double residual_window = 5.0;          ///< s, the last of a run, for its residual speed
@@ -44,8 +44,10 @@ std::string to_string(Cause);
 /// What is measured of one run. Spreads in m, velocities in m/s. Empty: not measurable, or without meaning
 /// for this run.
 struct Measures {
-  std::optional<double> end;        ///< s, the last time recorded
-  std::optional<double> gauge_end;  ///< spread (m) or plug velocity (m/s) at the end
+  std::optional<double> end;          ///< s, the last time recorded
+  std::optional<double> gauge_end;    ///< spread (m) or plug velocity (m/s) at the end
+  std::optional<double> uncertainty;  ///< m, of the spread at the end, slumps: the largest of what is known
+  std::string uncertainty_source;     ///< what it is: "the grid study among these runs", "a cell", ...
   std::optional<double> spread_1_5mm,
       spread_6mm;                       ///< of the last profile: the sensitivity to the 3 mm threshold
   std::optional<double> centre_depth;   ///< m, of the last profile
@@ -100,11 +102,33 @@ struct Pair {
   std::vector<At> at;
 };
 
+/// The square (finite volumes, material points) x (fluid, elasto-viscoplastic): the whole difference between
+/// the fluid in OpenFOAM and the material in MPM, split into what the law does and what the discretisation
+/// does.
+struct Square {
+  /// Indices of the runs; a corner that no run fills is empty.
+  std::optional<std::size_t> mpm_solid, mpm_fluid, foam_solid, foam_fluid;
+  std::string fluid;  ///< the fluid's model
+  /// Differences of the gauge, m or m/s.
+  struct At {
+    double time = 0.0;
+    double total = 0.0;           ///< foam_fluid less mpm_solid
+    double law = 0.0;             ///< fluid less solid, the mean of both solvers
+    double discretisation = 0.0;  ///< OpenFOAM less MPM, the mean of both laws; law + discretisation = total
+    double interaction = 0.0;  ///< half of what the law does in OpenFOAM beyond what it does in MPM: neither
+                               ///< can be told closer
+    double noise = 0.0;        ///< root sum square of the runs' scatter and of how their edge is read
+  };
+  std::vector<At> at;
+  std::vector<std::string> missing;  ///< corners without a run, and how to make them
+};
+
 /// A sentence of what was found.
 struct Finding {
-  enum class Topic { stop, difference, context };
-  Topic topic = Topic::stop;  ///< when and where it stops; which difference has which cause; references, cost
-                              ///< and limits
+  /// What comes first and carries the warnings; when and where each stops; how far apart they are; which
+  /// difference has which cause; cost; references and limits.
+  enum class Topic { opening, stop, apart, cause, cost, context };
+  Topic topic = Topic::stop;
   std::string text;
 };
 
@@ -115,12 +139,15 @@ struct Comparison {
   bool radial = true;  ///< profiles are against a radius
   std::vector<RunView> runs;
   std::vector<Pair> pairs;
-  std::vector<double> grid;        ///< m, common
-  std::vector<double> frames;      ///< s, at which profiles are shown and written
-  std::vector<double> times;       ///< s, at which pairs are compared
-  std::vector<double> stops;       ///< s, arbitrary stops
-  double end = 0.0;                ///< s, of the longest run
-  double cell = 0.0;               ///< m, the coarsest cell; 0 where none is known
+  std::optional<Square> square;  ///< where at least two of its corners on one side are among the runs
+  std::vector<double> grid;      ///< m, common
+  std::vector<double> frames;    ///< s, at which profiles are shown and written
+  std::vector<double> times;     ///< s, at which pairs are compared
+  std::vector<double> stops;     ///< s, arbitrary stops
+  double end = 0.0;              ///< s, of the longest run
+  double cell = 0.0;             ///< m, the coarsest cell; 0 where none is known
+  std::vector<std::string>
+      missing;                     ///< runs that the scene names and that are not here, and how to make them
   std::vector<std::string> notes;  ///< what the reader must know before trusting anything
   std::vector<Finding> findings;   ///< what was found, in the order in which it is told
   std::string fair;                ///< which comparison is fair

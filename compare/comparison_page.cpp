@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "compare/fields/section.h"
 #include "compare/run_view.h"
 #include "compare/words.h"
 
@@ -203,6 +204,7 @@ Table measures_table(const Comparison& comparison) {
   std::vector<RunColumn> columns;
   if (is_slump(comparison)) {
     columns = {measure_column("Spread at the end", "mm", fixed(0), &Measures::gauge_end, 1e3),
+               measure_column("±", "mm", fixed(0), &Measures::uncertainty, 1e3),
                measure_column("at 1.5 mm depth", "mm", fixed(0), &Measures::spread_1_5mm, 1e3),
                measure_column("at 6 mm depth", "mm", fixed(0), &Measures::spread_6mm, 1e3),
                measure_column("Centre", "mm", fixed(1), &Measures::centre_depth, 1e3),
@@ -232,6 +234,72 @@ Table measures_table(const Comparison& comparison) {
                               [](const RunView&) { return true; });
   table.caption = measures_caption(comparison);
   return table;
+}
+
+std::string square_caption(const Comparison& comparison) {
+  const Square& square = *comparison.square;
+  const auto label = [&](const std::optional<std::size_t>& run) { return comparison.runs[*run].label; };
+  return fmt::format(
+      "Total: {0} less {1}. Law: fluid less elasto-viscoplastic, the mean of both solvers. Discretisation: "
+      "OpenFOAM less MPM, "
+      "the mean of both laws; the two sum to the total. Shared: half of what the law does in OpenFOAM beyond "
+      "what it does in "
+      "MPM, which can be given to neither. Noise: the scatter of the four runs about their trend and half "
+      "the change of their "
+      "spread when the edge is read at 1.5 instead of 6 mm, as root sum square. The other corners: {2} and "
+      "{3}.",
+      label(square.foam_fluid), label(square.mpm_solid), label(square.mpm_fluid), label(square.foam_solid));
+}
+
+/// The difference at each time, split.
+std::optional<Chapter> square_chapter(const Comparison& comparison) {
+  if (!comparison.square) return std::nullopt;
+  const Square& square = *comparison.square;
+  Chapter chapter{"square", "Law, discretisation and noise"};
+  if (square.at.empty()) {
+    for (const std::string& command : square.missing)
+      chapter.blocks.push_back(Text{
+          "The square of (MPM, OpenFOAM) and (fluid, elasto-viscoplastic) lacks a run. Make it: " + command,
+          Text::Style::warning});
+    return chapter.blocks.empty() ? std::nullopt : std::optional(chapter);
+  }
+  const double scale = scale_of(comparison);
+  const std::string unit = unit_of(comparison);
+  const std::pair<const char*, double Square::At::*> parts[] = {
+      {"total", &Square::At::total},
+      {"law", &Square::At::law},
+      {"discretisation", &Square::At::discretisation},
+      {"shared", &Square::At::interaction},
+      {"noise", &Square::At::noise}};
+  Plot plot{.id = "split",
+            .title = "the difference between solvers and laws, split",
+            .caption = square_caption(comparison)};
+  plot.x = time_axis(comparison);
+  plot.y = {"difference in " + gauge_name(comparison), unit};
+  Table table{.id = "split-table", .title = "the difference, split at each time"};
+  table.columns = {{"Time (s)", "", significant(3), true}};
+  int colour = 0;
+  for (const auto& [name, part] : parts) {
+    Curve curve{.name = name};
+    for (const Square::At& at : square.at) {
+      curve.x.push_back(at.time);
+      curve.y.push_back(scale * (at.*part));
+    }
+    curve.colour = colour == 0 ? -1 : colour - 1;
+    curve.dash = colour++;
+    plot.curves.push_back(std::move(curve));
+    table.columns.push_back({name, unit, is_slump(comparison) ? signed_fixed(0) : significant(3)});
+  }
+  for (const double time : comparison.times) {
+    const auto at = std::lower_bound(square.at.begin(), square.at.end(), time - 1e-9,
+                                     [](const Square::At& a, double t) { return a.time < t; });
+    if (at == square.at.end()) continue;
+    Table::Row row{{Table::Cell(at->time)}};
+    for (const auto& [name, part] : parts) row.cells.push_back(scale * ((*at).*part));
+    table.rows.push_back(std::move(row));
+  }
+  chapter.blocks = {plot, table};
+  return chapter;
 }
 
 std::optional<Chapter> shear_chapter(const Comparison& comparison) {
@@ -479,20 +547,34 @@ Chapter provenance_chapter(const Comparison& comparison, const Json& json) {
   return chapter;
 }
 
+/// What the numbers are good to, and which of them may be held against which.
+Chapter trust_chapter(const Comparison& comparison) {
+  Chapter chapter{"trust", "How far it can be trusted, and which comparison is fair"};
+  for (const Finding& finding : comparison.findings)
+    if (finding.topic == Finding::Topic::context) chapter.blocks.push_back(Text{finding.text});
+  chapter.blocks.push_back(Text{comparison.fair});
+  return chapter;
+}
+
 std::vector<Block> words_of(const Comparison& comparison) {
   std::vector<Block> blocks;
   std::map<Finding::Topic, std::string> told;
   for (const Finding& finding : comparison.findings) {
-    if (blocks.empty())
-      blocks.push_back(Text{finding.text, Text::Style::opening});
-    else
-      told[finding.topic] += (told[finding.topic].empty() ? "" : " ") + finding.text;
+    std::string& text = told[finding.topic];
+    text += (text.empty() ? "" : " ") + finding.text;
   }
+  if (told.contains(Finding::Topic::opening))
+    blocks.push_back(Text{told[Finding::Topic::opening], Text::Style::opening});
   for (const std::string& note : comparison.notes) blocks.push_back(Text{note, Text::Style::warning});
+  if (!comparison.missing.empty())
+    blocks.push_back(Text{
+        "The scene names runs that are not among these: " + words::listed(comparison.missing, "; ") + ".",
+        Text::Style::warning});
   const std::pair<Finding::Topic, const char*> questions[] = {
       {Finding::Topic::stop, "When does each stop, and where?"},
-      {Finding::Topic::difference, "Which difference is physics, which numerics?"},
-      {Finding::Topic::context, "What did it cost, and how far can it be trusted?"}};
+      {Finding::Topic::apart, "How far apart are they?"},
+      {Finding::Topic::cause, "Which difference is physics, which numerics?"},
+      {Finding::Topic::cost, "What did it cost?"}};
   for (const auto& [topic, question] : questions)
     if (told.contains(topic)) blocks.push_back(report::Answer{question, told[topic]});
   return blocks;
@@ -512,11 +594,15 @@ report::Page page_of(const Comparison& comparison, const Json& json) {
   const auto add = [&](std::optional<Chapter> chapter) {
     if (chapter) page.chapters.push_back(std::move(*chapter));
   };
-  if (auto shapes = profiles(comparison)) add(Chapter{"shapes", "Shapes", {*shapes}});
+  Chapter shapes{"shapes", "Shapes"};
+  if (auto depths = profiles(comparison)) shapes.blocks.push_back(std::move(*depths));
+  if (auto section = fields::section_of(comparison)) shapes.blocks.push_back(std::move(*section));
+  if (!shapes.blocks.empty()) add(std::move(shapes));
+  add(square_chapter(comparison));
   add(shear_chapter(comparison));
   add(residual_chapter(comparison));
   add(stops_chapter(comparison));
-  add(Chapter{"fairness", "Which comparison is fair", {Text{comparison.fair}}});
+  add(trust_chapter(comparison));
   add(Chapter{"all-measures", "Measures", {measures_table(comparison)}});
   add(pairs_chapter(comparison));
   add(cost_chapter(comparison));

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "compare/exact/exact_run.h"
+#include "compare/fields/states.h"
 #include "compare/synthetic_runs.h"
 #include "compare/words.h"
 
@@ -28,7 +29,9 @@ class ComparisonTest : public testing::Test {
   }
   ~ComparisonTest() override { fs::remove_all(folder); }
 
-  Comparison compared(const Options& options = {}) const { return compare_runs(find_runs({folder}), options); }
+  Comparison compared(const Options& options = {}) const {
+    return compare_runs(find_runs({folder}), options);
+  }
   const RunView& run(const Comparison& comparison, const std::string& label) const {
     for (const RunView& view : comparison.runs)
       if (view.label == label) return view;
@@ -118,7 +121,114 @@ TEST_F(ComparisonTest, SplitsLawFromSolver) {
   EXPECT_NEAR(by_kind["solver"][0], 0.012, 1e-5);
   EXPECT_NEAR(by_kind["law"][0], 0.006, 2e-4);
   EXPECT_THAT(text(comparison),
-              HasSubstr("Changing only the solver: OpenFOAM papanastasiou ends 12 mm wider than MPM"));
+              HasSubstr("Changing only the solver: OpenFOAM papanastasiou ends level within 14 mm with MPM"));
+}
+
+TEST_F(ComparisonTest, TheSquareSplitsTheDifferenceAtEachTime) {
+  write_arrested();
+  auto mpm = creeping(2e-4);
+  mpm.radius = 0.291;
+  synthetic::write(mpm, folder / "mpm-fluid");
+  synthetic::Slump solid;
+  solid.solver = "foam";
+  solid.radius = 0.298;
+  synthetic::write(solid, folder / "foam-solid");
+  auto fluid = creeping(5e-4);
+  fluid.solver = "foam";
+  fluid.radius = 0.304;
+  synthetic::write(fluid, folder / "foam-fluid");
+  const Comparison comparison = compared();
+  ASSERT_TRUE(comparison.square);
+  EXPECT_EQ(comparison.square->fluid, "papanastasiou");
+  EXPECT_TRUE(comparison.square->missing.empty());
+  ASSERT_GT(comparison.square->at.size(), 20u);
+  for (const auto& at : comparison.square->at) {
+    EXPECT_NEAR(at.law + at.discretisation, at.total, 1e-12) << at.time;
+    EXPECT_GE(at.noise, 0.0);
+  }
+  // Late, where all have their radius: solid 576 and 596 mm, fluid 582 and 608 mm and what they creep.
+  const auto& last = comparison.square->at.back();
+  EXPECT_NEAR(last.time, 60.0, 1e-9);
+  EXPECT_NEAR(last.law, 0.5 * ((0.006 + 0.012) + (0.012 + 0.030)), 3e-4);
+  EXPECT_NEAR(last.discretisation, 0.5 * (0.020 + (0.026 + 0.018)), 3e-4);
+  EXPECT_NEAR(last.interaction, 0.5 * ((0.012 + 0.030) - (0.006 + 0.012)), 3e-4);
+  EXPECT_THAT(text(comparison), HasSubstr("the law makes 30 mm and the discretisation 32 mm"));
+}
+
+TEST_F(ComparisonTest, ASquareThatLacksARunSaysHowToMakeIt) {
+  write_arrested();
+  synthetic::write(creeping(1e-4), folder / "mpm-fluid");
+  const Comparison comparison = compared();
+  ASSERT_TRUE(comparison.square);
+  EXPECT_THAT(comparison.square->missing,
+              ElementsAre("flowrest foam roussel-slump --model elasto-viscoplastic",
+                          "flowrest foam roussel-slump --model papanastasiou"));
+  EXPECT_TRUE(comparison.square->at.empty());
+  EXPECT_THAT(comparison.missing,
+              testing::Contains(HasSubstr("flowrest foam roussel-slump --model bi-viscous")));
+}
+
+TEST_F(ComparisonTest, WordsCarryNoMoreDigitsThanAreKnown) {
+  EXPECT_EQ(words::spread(0.5634, 0.0084), "563 ± 8 mm");
+  EXPECT_EQ(words::spread(0.5634, 0.010), "563 ± 10 mm");
+  EXPECT_EQ(words::spread(0.6234, 0.034), "620 ± 30 mm");
+  EXPECT_EQ(words::spread(0.7234, 0.114), "720 ± 110 mm");
+  EXPECT_EQ(words::spread(0.5634, 0.00004), "563 ± 1 mm");
+  EXPECT_EQ(words::spread(0.5634, std::nullopt), "563 mm");
+
+  // Two grids tell more than a cell: 10 and 5 mm that differ by 4 mm leave 4 mm to the finer, 8 mm to the
+  // coarser.
+  synthetic::Slump coarse;
+  coarse.set = {"mpm.cell=0.010"};
+  synthetic::Slump fine;
+  fine.set = {"mpm.cell=0.005"};
+  fine.cell = 0.002;
+  fine.radius = coarse.radius + 0.002;
+  synthetic::write(coarse, folder / "coarse");
+  synthetic::write(fine, folder / "fine");
+  const Comparison comparison = compared();
+  const RunView& finer = run(comparison, "MPM elasto-viscoplastic, 5 mm cells");
+  EXPECT_NEAR(*finer.measures.uncertainty, 0.004, 2e-4);
+  EXPECT_EQ(finer.measures.uncertainty_source, "the difference between its grids");
+  EXPECT_NEAR(*run(comparison, "MPM elasto-viscoplastic, 10 mm cells").measures.uncertainty, 0.008, 1e-3);
+}
+
+TEST(ShearRate, IsThatOfTheFlowInTheSection) {
+  fields::Cells cells;
+  std::vector<double> cover, u, w;
+  constexpr double width = 0.01, height = 0.005;
+  for (int row = 0; row < 8; ++row)
+    for (int column = 0; column < 10; ++column) {
+      cells.west.push_back(column * width);
+      cells.east.push_back((column + 1) * width);
+      cells.bottom.push_back(row * height);
+      cells.top.push_back((row + 1) * height);
+      cover.push_back(1.0);
+    }
+  const auto fill = [&](auto along, auto up) {
+    u.clear();
+    w.clear();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double x = 0.5 * (cells.west[i] + cells.east[i]), z = 0.5 * (cells.bottom[i] + cells.top[i]);
+      u.push_back(along(x, z));
+      w.push_back(up(x, z));
+    }
+  };
+  // Simple shear over a wall that holds: exact in every cell but the topmost, which has no neighbour to tell
+  // by.
+  fill([](double, double z) { return 3.0 * z; }, [](double, double) { return 0.0; });
+  const auto sheared = fields::shear_rate(cells, cover, u, w, false, true);
+  for (std::size_t i = 0; i < 70; ++i) EXPECT_NEAR(sheared[i], 3.0, 1e-9) << i;
+  // Axisymmetric squeezing u = a r, w = -2 a z: sqrt(12) a.
+  fill([](double r, double) { return 2.0 * r; }, [](double, double z) { return -4.0 * z; });
+  const auto squeezed = fields::shear_rate(cells, cover, u, w, true, false);
+  EXPECT_NEAR(squeezed[25], std::sqrt(12.0) * 2.0, 1e-9);
+  EXPECT_NEAR(squeezed[10], std::sqrt(12.0) * 2.0, 1e-9) << "beside the axis";
+  // Air that rushes past does not count: the face takes the concrete's velocity.
+  fill([](double, double z) { return z > 0.02 ? 50.0 : 0.0; }, [](double, double) { return 0.0; });
+  for (std::size_t i = 0; i < cells.size(); ++i) cover[i] = cells.bottom[i] > 0.0199 ? 0.0 : 1.0;
+  const auto covered = fields::shear_rate(cells, cover, u, w, false, true);
+  EXPECT_NEAR(covered[35], 0.0, 1e-9);
 }
 
 TEST_F(ComparisonTest, ProfileErrorsVanishBetweenARunAndItself) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compare/comparison.h"
+#include "compare/measures/run_measures.h"
 #include "compare/words.h"
 
 namespace flowrest::compare {
@@ -17,10 +18,21 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-std::string difference_of_spread(double metres) {
-  const double mm = std::round(1000.0 * metres);
-  if (mm == 0.0) return "the same to the millimetre";
-  return fmt::format("{:.0f} mm {}", std::abs(mm), mm > 0.0 ? "wider" : "narrower");
+std::string spread_of(const RunView& view) {
+  return words::spread(*view.measures.gauge_end, view.measures.uncertainty);
+}
+
+/// What is known of the difference between two runs; a run without an uncertainty adds none.
+double uncertainty_of(const RunView& run, const RunView& reference) {
+  return std::hypot(run.measures.uncertainty.value_or(0.0), reference.measures.uncertainty.value_or(0.0));
+}
+
+/// "62 ± 14 mm wider", or that the two cannot be told apart.
+std::string difference_of_spread(double metres, double uncertainty) {
+  if (std::abs(metres) <= uncertainty)
+    return fmt::format("level within {}", words::spread(uncertainty, std::nullopt));
+  return fmt::format("{} {}", words::spread(std::abs(metres), uncertainty),
+                     metres > 0.0 ? "wider" : "narrower");
 }
 
 std::string noise_clause(const RunView& view) {
@@ -37,13 +49,13 @@ std::string arrest_sentence(const RunView& view) {
   if (view.held)
     return fmt::format("{} comes to rest{} with a spread of {}{}{}.", view.label,
                        m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "",
-                       words::spread(*m.gauge_end), more, noise);
+                       spread_of(view), more, noise);
   const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
   if (m.cause == Cause::at_rest && rest)
     return fmt::format("{} has all but stopped by {} and ends with a spread of {}{}.", view.label,
-                       words::time(*rest), words::spread(*m.gauge_end), noise);
+                       words::time(*rest), spread_of(view), noise);
   return fmt::format("{} has not come to rest by {}: its spread is {}{}{}.", view.label, words::time(*m.end),
-                     words::spread(*m.gauge_end),
+                     spread_of(view),
                      m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", noise);
 }
 
@@ -53,16 +65,17 @@ std::string fluid_clause(const RunView& view) {
   std::string inner;
   const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : ", ") + part; };
   if (m.overshoot_reference) {
-    const double over = std::round(1000.0 * (*m.gauge_end - *m.overshoot_reference));
-    add(over == 0.0 ? std::string("level with the arrested spread")
-                    : fmt::format("{:.0f} mm {} the arrested spread", std::abs(over),
-                                  over > 0.0 ? "past" : "short of"));
+    const double over = *m.gauge_end - *m.overshoot_reference;
+    add(std::abs(over) <= m.uncertainty.value_or(5e-4)
+            ? std::string("level with the arrested spread")
+            : fmt::format("{} {} the arrested spread", words::spread(std::abs(over), m.uncertainty),
+                          over > 0.0 ? "past" : "short of"));
   }
   if (m.residual)
     add(fmt::format("{} by {}", *m.residual >= 0.0 ? "growing" : "shrinking",
                     words::speed(std::abs(*m.residual))));
-  return fmt::format("{} stands at {}{}{}{}", view.label, words::spread(*m.gauge_end),
-                     inner.empty() ? "" : " (", inner, inner.empty() ? "" : noise_clause(view) + ")");
+  return fmt::format("{} stands at {}{}{}{}", view.label, spread_of(view), inner.empty() ? "" : " (", inner,
+                     inner.empty() ? "" : noise_clause(view) + ")");
 }
 
 /// The fluids, those that end together in one sentence.
@@ -125,11 +138,12 @@ std::string split_sentence(const Comparison& comparison) {
     // Two fluids differ by their regularisation only; the law is read off against the material that stops.
     if (pair.kind == "law" && reference.fluid) continue;
     const std::string what = comparison.kind == scenes::Kind::slump
-                                 ? difference_of_spread(*at->gauge_difference)
+                                 ? difference_of_spread(*at->gauge_difference, uncertainty_of(run, reference))
                                  : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
                                                *at->gauge_difference >= 0.0 ? "faster" : "slower");
     (pair.kind == "law" ? law : solver)
-        .push_back(fmt::format("{} ends {} than {}", run.label, what, reference.label));
+        .push_back(fmt::format("{} ends {} {} {}", run.label, what,
+                               what.starts_with("level") ? "with" : "than", reference.label));
   }
   std::string text;
   if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
@@ -143,8 +157,8 @@ std::string edge_sentence(const Comparison& comparison) {
   std::vector<std::string> films;
   for (const RunView& view : comparison.runs) {
     const Measures& m = view.measures;
-    if (view.exact || !m.spread_1_5mm || !m.spread_6mm || !(comparison.cell > 0.0)) continue;
-    if (*m.spread_1_5mm - *m.spread_6mm < 3.0 * comparison.cell) continue;
+    if (view.exact || !m.spread_1_5mm || !m.spread_6mm) continue;
+    if (!ends_in_film(comparison, *m.spread_1_5mm - *m.spread_6mm)) continue;
     films.push_back(
         fmt::format("{} ({:.0f} to {:.0f} mm)", view.label, 1e3 * *m.spread_6mm, 1e3 * *m.spread_1_5mm));
   }
@@ -164,6 +178,80 @@ std::string cost_sentence(const Comparison& comparison) {
   return costs.empty() ? "" : fmt::format("CPU time: {}.", listed(costs));
 }
 
+/// The whole difference between the fluid in OpenFOAM and the material in MPM, split.
+std::string square_sentence(const Comparison& comparison) {
+  if (!comparison.square) return "";
+  const Square& square = *comparison.square;
+  if (square.at.empty()) {
+    if (square.missing.empty()) return "";
+    return fmt::format("Law and discretisation cannot be told apart in full, for want of {}: {}.",
+                       square.missing.size() == 1 ? "a run" : "runs", listed(square.missing));
+  }
+  const Square::At& at = square.at.back();
+  const bool slump = comparison.kind == scenes::Kind::slump;
+  const auto amount = [&](double value) {
+    return slump ? fmt::format("{}{:.0f} mm", value < 0.0 ? "−" : "", std::abs(1e3 * value))
+                 : words::velocity(value);
+  };
+  return fmt::format(
+      "Of the {} between {} and {} at {}, the law makes {} and the discretisation {}; {} more can be given "
+      "to neither, and "
+      "scatter and the reading of the edge blur it by {}.",
+      amount(at.total), comparison.runs[*square.foam_fluid].label, comparison.runs[*square.mpm_solid].label,
+      words::time(at.time), amount(at.law), amount(at.discretisation), amount(std::abs(at.interaction)),
+      amount(at.noise));
+}
+
+/// Between which spreads the runs end.
+std::string range_sentence(const Comparison& comparison) {
+  const RunView *least = nullptr, *most = nullptr;
+  for (const RunView& view : comparison.runs) {
+    if (view.exact || !view.measures.gauge_end || !view.trouble.empty()) continue;
+    if (!least || *view.measures.gauge_end < *least->measures.gauge_end) least = &view;
+    if (!most || *view.measures.gauge_end > *most->measures.gauge_end) most = &view;
+  }
+  if (!least || least == most || comparison.kind != scenes::Kind::slump) return "";
+  return fmt::format("The spreads end between {} ({}) and {} ({}).", spread_of(*least), least->label,
+                     spread_of(*most), most->label);
+}
+
+/// The headline: what comes to rest and what does not, with every warning.
+std::string opening_sentence(const Comparison& comparison) {
+  std::vector<std::string> moving, noisy, incomplete;
+  const RunView* arrested = nullptr;
+  for (const RunView& view : comparison.runs) {
+    if (view.exact) continue;
+    if (view.noisy) noisy.push_back(view.label);
+    if (!view.trouble.empty()) incomplete.push_back(fmt::format("{} ({})", view.label, view.trouble));
+    if (view.gauge.empty() || !view.trouble.empty()) continue;
+    const bool rests = view.held || view.measures.cause == Cause::at_rest ||
+                       (view.measures.stop_after_step && view.measures.cause != Cause::creep);
+    if (!rests)
+      moving.push_back(view.label);
+    else if (!arrested || (arrested->noisy && !view.noisy))
+      arrested = &view;
+  }
+  std::string text;
+  if (arrested && comparison.kind == scenes::Kind::slump) {
+    const Measures& m = arrested->measures;
+    const auto rest = m.rest_declared        ? m.rest_declared
+                      : m.rest_by_shear_rate ? m.rest_by_shear_rate
+                                             : m.rest_by_spread_rate;
+    text = fmt::format("{} comes to rest{} with a spread of {}", arrested->label,
+                       rest ? " after " + words::time(*rest) : "", spread_of(*arrested));
+  } else if (arrested) {
+    text = fmt::format("{} stops {} after the last change of force", arrested->label,
+                       words::time(*arrested->measures.stop_after_step));
+  }
+  const auto add = [&](const std::string& clause) { text += (text.empty() ? "" : "; ") + clause; };
+  if (!moving.empty())
+    add(fmt::format("{} {} still moving at {}", listed(moving), moving.size() == 1 ? "is" : "are",
+                    words::time(comparison.end)));
+  if (!noisy.empty()) add(fmt::format("noisy: {}", listed(noisy)));
+  if (!incomplete.empty()) add(fmt::format("incomplete: {}", listed(incomplete)));
+  return text.empty() ? "" : text + ".";
+}
+
 std::string trouble_sentences(const Comparison& comparison) {
   std::string text;
   for (const RunView& view : comparison.runs)
@@ -171,6 +259,19 @@ std::string trouble_sentences(const Comparison& comparison) {
       text += fmt::format("{}{} is incomplete ({}); what follows knows it only that far{}.",
                           text.empty() ? "" : " ", view.label, view.trouble, noise_clause(view));
   return text;
+}
+
+/// What the uncertainties stand for.
+std::string uncertainty_sentence(const Comparison& comparison) {
+  std::map<std::string, std::vector<std::string>> by_source;
+  for (const RunView& view : comparison.runs)
+    if (view.measures.uncertainty) by_source[view.measures.uncertainty_source].push_back(view.label);
+  std::vector<std::string> parts;
+  for (const auto& [source, labels] : by_source)
+    parts.push_back(fmt::format("{} for {}", source, listed(labels)));
+  return parts.empty() ? ""
+                       : fmt::format("What stands after ± is the largest that is known of each run: {}.",
+                                     listed(parts, "; "));
 }
 
 using Topic = Finding::Topic;
@@ -189,9 +290,12 @@ void describe_slump(Comparison& comparison) {
   }
   for (std::string& sentence : fluid_sentences(comparison))
     tell(comparison, Topic::stop, std::move(sentence));
-  tell(comparison, Topic::difference, split_sentence(comparison));
-  tell(comparison, Topic::difference, cause_sentence(comparison));
-  tell(comparison, Topic::difference, edge_sentence(comparison));
+  tell(comparison, Topic::apart, range_sentence(comparison));
+  tell(comparison, Topic::apart, split_sentence(comparison));
+  tell(comparison, Topic::cause, square_sentence(comparison));
+  tell(comparison, Topic::cause, cause_sentence(comparison));
+  tell(comparison, Topic::context, edge_sentence(comparison));
+  tell(comparison, Topic::context, uncertainty_sentence(comparison));
   if (!exact.empty())
     tell(comparison, Topic::context, fmt::format("The quasi-static solutions give {}.", listed(exact)));
 }
@@ -228,10 +332,11 @@ void describe_duct(Comparison& comparison) {
                                    words::percent(steady->error.l2_relative), words::time(steady->time)));
   }
   if (!errors.empty())
-    tell(comparison, Topic::difference,
+    tell(comparison, Topic::apart,
          fmt::format("In L2 the profiles differ from the exact steady one: {}.", listed(errors)));
-  tell(comparison, Topic::difference, split_sentence(comparison));
-  tell(comparison, Topic::difference, cause_sentence(comparison));
+  tell(comparison, Topic::apart, split_sentence(comparison));
+  tell(comparison, Topic::cause, square_sentence(comparison));
+  tell(comparison, Topic::cause, cause_sentence(comparison));
 }
 
 std::string fair_slump(const Comparison& comparison) {
@@ -266,6 +371,7 @@ std::string fair_slump(const Comparison& comparison) {
 
 void describe(Comparison& comparison) {
   comparison.findings.clear();
+  tell(comparison, Topic::opening, opening_sentence(comparison));
   tell(comparison, Topic::stop, trouble_sentences(comparison));
   if (comparison.kind == scenes::Kind::slump) {
     describe_slump(comparison);
@@ -281,12 +387,7 @@ void describe(Comparison& comparison) {
         "agree on velocity "
         "profiles long before they agree on arrest: judge by both.";
   }
-  tell(comparison, Topic::context, cost_sentence(comparison));
-  if (comparison.kind == scenes::Kind::slump && comparison.cell > 0.0)
-    tell(comparison, Topic::context,
-         fmt::format("Each run stands on one grid: differences below a cell ({:g} mm) are not settled by "
-                     "this comparison.",
-                     1000.0 * comparison.cell));
+  tell(comparison, Topic::cost, cost_sentence(comparison));
 }
 
 }  // namespace flowrest::compare

@@ -22,6 +22,8 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
   Json json = {{"end_s", scaled(m.end)}};
   if (kind == scenes::Kind::slump) {
     json["spread_end_mm"] = scaled(m.gauge_end, 1e3);
+    json["spread_end_uncertainty_mm"] = scaled(m.uncertainty, 1e3);
+    json["spread_end_uncertainty_source"] = m.uncertainty_source;
     json["spread_end_at_1.5mm_mm"] = scaled(m.spread_1_5mm, 1e3);
     json["spread_end_at_6mm_mm"] = scaled(m.spread_6mm, 1e3);
     json["centre_end_mm"] = scaled(m.centre_depth, 1e3);
@@ -55,6 +57,32 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
   json["cpu_s"] = scaled(m.cpu);
   json["wall_s"] = scaled(m.wall);
   json["cpu_s_per_simulated_s"] = scaled(m.cpu_per_simulated_second);
+  return json;
+}
+
+/// The difference between the fluid in OpenFOAM and the material in MPM, split at each time.
+Json square_json(const Comparison& comparison) {
+  if (!comparison.square) return nullptr;
+  const Square& square = *comparison.square;
+  const bool slump = comparison.kind == scenes::Kind::slump;
+  const double scale = slump ? 1e3 : 1.0;
+  const std::string unit = slump ? "_mm" : "_m_s";
+  const auto label = [&](const std::optional<std::size_t>& run) {
+    return run ? Json(comparison.runs[*run].label) : Json();
+  };
+  Json json = {{"mpm_solid", label(square.mpm_solid)},
+               {"mpm_fluid", label(square.mpm_fluid)},
+               {"foam_solid", label(square.foam_solid)},
+               {"foam_fluid", label(square.foam_fluid)},
+               {"missing", square.missing},
+               {"at", Json::array()}};
+  for (const Square::At& at : square.at)
+    json["at"].push_back({{"time_s", at.time},
+                          {"total" + unit, scale * at.total},
+                          {"law" + unit, scale * at.law},
+                          {"discretisation" + unit, scale * at.discretisation},
+                          {"interaction" + unit, scale * at.interaction},
+                          {"noise" + unit, scale * at.noise}});
   return json;
 }
 
@@ -148,6 +176,7 @@ Json to_json(const Comparison& comparison) {
                {"title", comparison.title},
                {"kind", scenes::to_string(comparison.kind)},
                {"findings", Json::array()},
+               {"missing", comparison.missing},
                {"notes", comparison.notes},
                {"fair", comparison.fair},
                {"thresholds",
@@ -158,7 +187,7 @@ Json to_json(const Comparison& comparison) {
                  {"residual_window_s", o.residual_window},
                  {"creep_factor", o.creep_factor},
                  {"spread_depth_mm", 3.0}}}};
-  const char* topics[] = {"stop", "difference", "context"};
+  const char* topics[] = {"opening", "stop", "apart", "cause", "cost", "context"};
   for (const Finding& finding : comparison.findings)
     json["findings"].push_back({{"topic", topics[static_cast<int>(finding.topic)]}, {"text", finding.text}});
   Json columns = Json::array();
@@ -199,6 +228,7 @@ Json to_json(const Comparison& comparison) {
                               scaled(at.gauge_difference, scale)}});
     json["pairs"].push_back(entry);
   }
+  json["square"] = square_json(comparison);
   json["arbitrary_stops"] = {{"time_s", comparison.stops}, {"runs", Json::array()}};
   for (const RunView& view : comparison.runs) {
     if (view.exact) continue;

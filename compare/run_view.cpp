@@ -204,6 +204,31 @@ void check_same_scene(Comparison& comparison) {
   comparison.notes.push_back("These runs are not of the same physical scene: they differ in " + keys + ".");
 }
 
+std::string command_for(const Comparison& comparison, const std::string& solver, const std::string& model) {
+  const std::string scene = word(comparison.runs.front().run.info, "/scene_name");
+  return fmt::format("flowrest {} {}{}", solver, scene.empty() ? "SCENE" : scene,
+                     model.empty() ? "" : " --model " + model);
+}
+
+void note_missing(Comparison& comparison) {
+  const Json& info = comparison.runs.front().run.info;
+  const Json::json_pointer named("/settings/runs");
+  if (!info.contains(named) || !info.at(named).is_object()) return;
+  for (const auto& [solver, models] : info.at(named).items()) {
+    if (!models.is_array()) continue;
+    for (const Json& model : models) {
+      if (!model.is_string()) continue;
+      const bool here = std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const RunView& view) {
+        return view.solver == solver && view.model == model.get<std::string>();
+      });
+      if (here) continue;
+      comparison.missing.push_back(fmt::format("{} {} (make it by `{}`)",
+                                               solver == "mpm" ? "MPM" : "OpenFOAM", model.get<std::string>(),
+                                               command_for(comparison, solver, model.get<std::string>())));
+    }
+  }
+}
+
 std::optional<double> RunView::gauge_at(double time) const {
   if (gauge.empty()) return std::nullopt;
   if (!exact && (time < gauge.time.front() - 1e-9 || (!held && time > gauge.end() + 1e-9)))

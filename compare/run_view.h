@@ -29,4 +29,10 @@ void make_labels_unique(std::vector<RunView>&);
 /// solvers.
 void check_same_scene(Comparison&);
 
+/// Notes the runs that the scene names and that are not among these, each with the command that makes it.
+void note_missing(Comparison&);
+
+/// The command that makes a run of the scene: "flowrest foam roussel-slump --model bi-viscous".
+std::string command_for(const Comparison&, const std::string& solver, const std::string& model);
+
 }  // namespace flowrest::compare

@@ -17,6 +17,7 @@ double Slump::radius_at(double time) const {
 void write(const Slump& slump, const std::filesystem::path& directory) {
   scenes::Overrides overrides;
   overrides.model = slump.model;
+  overrides.set = slump.set;
   const auto scene = scenes::load_scene("roussel-slump", overrides);
   runs::RunWriter writer(directory, scene, slump.solver);
   writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3", "shear_rate_p99_1_s"});

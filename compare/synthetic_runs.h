@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "runs/run_directory.h"
 
@@ -22,7 +23,8 @@ struct Slump {
   runs::Status status = runs::Status::end_time;
   std::string reason;
   std::string verdict = "sound";
-  double cpu = 12.0;  ///< s
+  double cpu = 12.0;             ///< s
+  std::vector<std::string> set;  ///< overrides of the scene: "mpm.cell=0.005"
 
   double radius_at(double time) const;
 };

@@ -20,6 +20,17 @@ std::string significant(double value, int digits) {
 
 std::string spread(double metres) { return fmt::format("{:.0f} mm", 1000.0 * metres); }
 
+std::string spread(double metres, const std::optional<double>& uncertainty) {
+  if (!uncertainty || !(*uncertainty > 0.0)) return spread(metres);
+  // One digit of the uncertainty, two where it begins with 1, never below a millimetre; the value ends at the
+  // same place.
+  const double mm = std::max(1000.0 * *uncertainty, 1.0);
+  const double leading = std::pow(10.0, std::floor(std::log10(mm)));
+  const double place = std::max(mm < 1.95 * leading ? 0.1 * leading : leading, 1.0);
+  return fmt::format("{:.0f} ± {:.0f} mm", place * std::round(1000.0 * metres / place),
+                     place * std::round(mm / place));
+}
+
 std::string time(double seconds) {
   return seconds < 9.95 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.0f} s", seconds);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,7 +8,9 @@
 namespace flowrest::compare::words {
 
 std::string spread(double metres);  ///< "575 mm"
-std::string time(double seconds);   ///< "19 s", "4.6 s"
+/// With no digit that the uncertainty does not support: "563 ± 8 mm", "620 ± 30 mm"; without one as above.
+std::string spread(double metres, const std::optional<double>& uncertainty);
+std::string time(double seconds);  ///< "19 s", "4.6 s"
 std::string speed(
     double m_per_s);  ///< "0.25 mm/s", of creep; "less than 0.001 mm/s" below what can be told from rest
 std::string velocity(double m_per_s);  ///< "1.333 m/s", "1.7 mm/s"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compare/exact/creep.h"
 #include "compare/exact/solutions.h"
@@ -87,6 +88,27 @@ Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
   if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
   if (view.noisy) return Cause::noise;
   return m.predicted_creep ? Cause::unexplained : Cause::unknown;
+}
+
+std::optional<double> cell_of(const RunView& view) { return setting(view, "/" + view.solver + "/cell"); }
+
+/// By how much the spread at the end still changes with the grid: the difference to the run of the same law
+/// and solver whose cell is nearest, taken on to zero cell size at first order.
+std::optional<double> grid_difference(const Comparison& comparison, const RunView& view) {
+  const auto own = cell_of(view);
+  std::optional<double> found;
+  double closest = std::numeric_limits<double>::infinity();
+  for (const RunView& other : comparison.runs) {
+    const auto cell = cell_of(other);
+    if (!own || !cell || other.solver != view.solver || other.model != view.model ||
+        !other.measures.gauge_end)
+      continue;
+    const double ratio = *own / *cell;
+    if (std::abs(std::log(ratio)) < 0.1 || std::abs(std::log(ratio)) >= closest) continue;
+    closest = std::abs(std::log(ratio));
+    found = std::abs(*view.measures.gauge_end - *other.measures.gauge_end) / std::abs(1.0 - 1.0 / ratio);
+  }
+  return found;
 }
 
 /// The run whose arrested spread overshoots are counted from: elasto-viscoplastic, the same solver if it can
@@ -193,6 +215,30 @@ void measure_overshoot(Comparison& comparison) {
     for (const double time : comparison.options.overshoot_times)
       if (const auto value = view.gauge_at(time))
         view.measures.overshoot[time] = *value - *reference->measures.gauge_end;
+  }
+}
+
+bool ends_in_film(const Comparison& comparison, double sensitivity) {
+  return comparison.cell > 0.0 && sensitivity >= 3.0 * comparison.cell;
+}
+
+void measure_uncertainty(Comparison& comparison) {
+  if (comparison.kind != scenes::Kind::slump) return;
+  for (RunView& view : comparison.runs) {
+    Measures& m = view.measures;
+    if (view.exact || !m.gauge_end) continue;
+    const auto raise = [&](double value, const std::string& source) {
+      if (value <= m.uncertainty.value_or(0.0)) return;
+      m.uncertainty = value;
+      m.uncertainty_source = source;
+    };
+    if (const auto grid = grid_difference(comparison, view))
+      raise(*grid, "the difference between its grids");
+    else if (const auto cell = cell_of(view))
+      raise(*cell, "its cell (there is no second grid)");
+    if (m.residual_scatter) raise(2.0 * *m.residual_scatter, "the scatter of its record");
+    if (m.spread_1_5mm && m.spread_6mm && ends_in_film(comparison, *m.spread_1_5mm - *m.spread_6mm))
+      raise(0.5 * (*m.spread_1_5mm - *m.spread_6mm), "how its edge is read (at 1.5 or at 6 mm of depth)");
   }
 }
 

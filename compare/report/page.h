@@ -51,10 +51,10 @@ struct Axis {
 /// Points in a plot, joined or not.
 struct Curve {
   std::string name = {};  ///< of the legend; empty: the entry's
-  int entry =
-      -1;  ///< index in Page::entries, whose looks it takes and with which it is hidden; -1: none, ink
+  int entry = -1;  ///< index in Page::entries, whose looks it takes and with which it is hidden; -1: none
   std::vector<double> x = {}, y = {};   ///< of equal length; a y that is not finite is a gap
   std::vector<std::string> hover = {};  ///< empty, or a text a point: the settings behind it
+  int colour = -1, dash = 0;            ///< of a curve without an entry
   bool line = true;
   bool marks = false;
   std::optional<double> held_from =

@@ -67,6 +67,8 @@ Json json_of(const Plot& plot) {
   for (const Curve& curve : plot.curves)
     curves.push_back({{"name", curve.name},
                       {"entry", curve.entry},
+                      {"colour", curve.colour},
+                      {"dash", curve.dash},
                       {"x", numbers(curve.x)},
                       {"y", numbers(curve.y)},
                       {"hover", curve.hover},

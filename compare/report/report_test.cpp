@@ -102,9 +102,12 @@ TEST_F(ReportTest, StandsByItself) {
   const auto begin = page.find("<section class=\"first\"");
   ASSERT_NE(begin, std::string::npos);
   const std::string first = page.substr(begin, page.find("</section>", begin) - begin);
-  EXPECT_THAT(
-      first, HasSubstr("MPM elasto-viscoplastic comes to rest after 20&nbsp;s with a spread of 576&nbsp;mm"));
+  EXPECT_THAT(first, HasSubstr("MPM elasto-viscoplastic comes to rest after 20&nbsp;s with a spread of "
+                               "576&nbsp;±&nbsp;10&nbsp;mm"));
+  EXPECT_THAT(first, HasSubstr("noisy: OpenFOAM papanastasiou.</p>"))
+      << "the first sentence lacks the warning";
   EXPECT_THAT(first, HasSubstr("noisy: the initial residual rose to 0.12"));
+  EXPECT_THAT(first, HasSubstr("(make it by `flowrest foam roussel-slump --model bi-viscous`)"));
 }
 
 TEST_F(ReportTest, TextOfASceneIsNoMarkup) {

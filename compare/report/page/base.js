@@ -140,8 +140,8 @@ const checkbox = (text, checked, change) => {
 // The legend of a figure: a button a run, which shows and hides it in every figure of the page.
 const legend = items => {
   const node = element('ul', {class: 'legend', 'aria-label': 'Legend'});
-  const fill = () => node.replaceChildren(...items.map(({entry, name, marks, line}) => {
-    const parts = [swatch(entry, marks, line), element('span', {}, name || entry.name), ...(entry && !name ? badgesOf(entry) : [])];
+  const fill = () => node.replaceChildren(...items.map(({entry, looks, name, marks, line}) => {
+    const parts = [swatch(looks || entry, marks, line), element('span', {}, name || entry.name), ...(entry && !name ? badgesOf(entry) : [])];
     if (!entry) return element('li', {}, element('span', {class: 'key'}, ...parts));
     const button = element('button', {type: 'button', class: 'key', 'aria-pressed': String(entry.shown), title: entry.shown ? 'Hide in every figure' : 'Show in every figure'}, ...parts);
     button.addEventListener('click', () => {

@@ -92,7 +92,7 @@ const setup = (canvas, block, config, paint) => {
   config.plugins = [ground, intervals];
   config.options = {responsive: true, maintainAspectRatio: false, animation: false, ...config.options};
   config.options.plugins = {legend: {display: false}, title: {display: false}, ...config.options.plugins,
-    tooltip: {usePointStyle: true, boxPadding: 4, padding: 9, cornerRadius: 6, ...config.options.plugins?.tooltip}};
+    tooltip: {usePointStyle: true, boxPadding: 4, position: config.options.nearest || config.type === 'bar' ? 'nearest' : 'average', padding: 9, cornerRadius: 6, ...config.options.plugins?.tooltip}};
   const chart = new Chart(canvas, config);
   const repaintChart = () => { paint(chart); paintTooltip(chart); chart.update('none'); };
   painters.push(repaintChart);
@@ -134,14 +134,17 @@ const readByKeyboard = (canvas, chart) => {
 };
 const paintLines = chart => {
   for (const dataset of chart.data.datasets) {
-    const colour = inkOf(dataset.entry);
+    const colour = inkOf(dataset.looks || dataset.entry);
     Object.assign(dataset, {borderColor: colour, backgroundColor: colour, pointBackgroundColor: colour, pointBorderColor: colour});
   }
 };
+// What is drawn in ink would vanish on the tooltip's ground.
+const labelColour = item => ({borderColor: palette.paper, backgroundColor: item.dataset.borderColor, borderWidth: 1.5, borderRadius: 3});
 const readings = (x, y, swap) => ({
   title: items => items.length ? `${x.name} ${withUnit(significant(swap ? items[0].parsed.y : items[0].parsed.x, 3), x.unit)}` : '',
   label: item => `${item.dataset.label}: ${withUnit(significant(swap ? item.parsed.x : item.parsed.y, 4), y.unit)}`,
   labelPointStyle: () => ({pointStyle: 'rectRounded', rotation: 0}),
+  labelColor: labelColour,
 });
 
 const drawPlot = (block, body) => {
@@ -150,6 +153,7 @@ const drawPlot = (block, body) => {
     if (block[which].switch && state.has(`${block.id}.${which}`)) logs[which] = state.get(`${block.id}.${which}`) === 'log';
   let whole = block.focus === null || state.get(`${block.id}.range`) === 'whole';
   const entryOf = curve => curve.entry >= 0 ? entries[curve.entry] : null;
+  const looksOf = curve => entryOf(curve) || curve;
   const nearest = block.curves.some(curve => curve.hover.length);
   const values = {x: block.curves.flatMap(curve => curve.x), y: block.curves.flatMap(curve => curve.y.filter(isNumber))};
   const scales = () => {
@@ -163,9 +167,9 @@ const drawPlot = (block, body) => {
   const datasets = block.curves.map(curve => {
     const entry = entryOf(curve);
     return {
-      label: curve.name || (entry ? nameOf(entry) : ''), entry, curve,
+      label: curve.name || (entry ? nameOf(entry) : ''), entry, curve, looks: looksOf(curve),
       data: curve.x.map((x, i) => ({x, y: curve.y[i]})), normalized: true,
-      showLine: curve.line, borderDash: dashOf(entry), borderWidth: entry && entry.colour < 0 ? 1.8 : 2.3,
+      showLine: curve.line, borderDash: dashOf(looksOf(curve)), borderWidth: looksOf(curve).colour < 0 ? 1.8 : 2.3,
       pointRadius: curve.marks ? 4.5 : 0, pointHoverRadius: curve.marks ? 7 : 4, pointHitRadius: curve.marks ? 8 : 1,
       tension: 0, spanGaps: false,
       segment: curve.held_from === null ? undefined : {borderDash: c => c.p0.parsed.x >= curve.held_from ? [1, 5] : undefined},
@@ -176,7 +180,7 @@ const drawPlot = (block, body) => {
     title: items => items.length ? items[0].dataset.label : '',
     label: item => [...(item.dataset.curve.hover[item.dataIndex] || '').split('\n').filter(Boolean),
       `${block.x.name} ${withUnit(significant(item.parsed.x, 3), block.x.unit)}`, `${block.y.name} ${withUnit(significant(item.parsed.y, 3), block.y.unit)}`],
-    labelPointStyle: () => ({pointStyle: 'rectRounded', rotation: 0}),
+    labelPointStyle: () => ({pointStyle: 'rectRounded', rotation: 0}), labelColor: labelColour,
   } : readings(block.x, block.y, false)};
   const chart = setup(canvas, block, {type: 'line', data: {datasets}, options: {parsing: false, normalized: true, nearest,
     interaction: nearest ? {mode: 'nearest', intersect: false, axis: 'xy'} : {mode: 'abreast', intersect: false}, scales: scales(), plugins: {tooltip}}}, paintLines);
@@ -196,7 +200,7 @@ const drawPlot = (block, body) => {
   const items = [];
   for (const curve of block.curves) {
     const entry = entryOf(curve);
-    if (!items.some(item => item.entry === entry && item.name === curve.name)) items.push({entry, name: curve.name, marks: curve.marks, line: curve.line});
+    if (!items.some(item => item.entry === entry && item.name === curve.name)) items.push({entry, looks: looksOf(curve), name: curve.name, marks: curve.marks, line: curve.line});
   }
   body.append(legend(items));
   if (controls.children.length) body.append(controls);

@@ -102,10 +102,10 @@ const drawSection = (block, body) => {
     }
     const upwards = step(high / stretch, 4);
     ctx.textAlign = 'right'; ctx.textBaseline = 'middle';
-    for (let v = 0; v <= high / stretch * (1 + 1e-9); v += upwards) {
-      const at = foot - scale * stretch * v;
+    for (let v = Math.ceil(z.from / upwards) * upwards; v <= z.from + high / stretch * (1 + 1e-9); v += upwards) {
+      const at = foot - scale * stretch * (v - z.from);
       ctx.moveTo(margin.left - 4, at); ctx.lineTo(margin.left, at);
-      ctx.fillText(String(Number((z.from + v).toPrecision(6))), margin.left - 6, at);
+      ctx.fillText(String(Number(v.toPrecision(6))), margin.left - 6, at);
     }
     ctx.stroke();
     ctx.textAlign = 'right'; ctx.textBaseline = 'bottom';
@@ -129,8 +129,8 @@ const drawSection = (block, body) => {
   const label = () => {
     const q = block.quantities[quantity];
     keyName.textContent = q.name + (q.unit ? ` (${q.unit}${q.log ? ', logarithmic' : ''})` : '');
-    low.textContent = (q.log ? '\u2264\u2009' : '') + significant(q.from, 2);
-    highest.textContent = '\u2265\u2009' + significant(q.to, 2);
+    low.textContent = (q.log ? '\u2264\u2009' : '') + significant(q.from, q.log ? 1 : 2);
+    highest.textContent = '\u2265\u2009' + significant(q.to, q.log ? 1 : 2);
   };
   const select = element('select', {'aria-label': 'Colour by'});
   block.quantities.forEach((q, i) => select.append(element('option', {value: i}, q.name)));

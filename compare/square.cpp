@@ -1,0 +1,98 @@
+#include "compare/square.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/measures/run_measures.h"
+#include "compare/run_view.h"
+#include "runs/depth.h"
+
+namespace flowrest::compare {
+
+namespace {
+
+constexpr double scatter_window = 2.0;  // s, over which a run's scatter is taken
+
+/// The first run of a solver and model that has a gauge.
+std::optional<std::size_t> corner(const Comparison& comparison, const std::string& solver,
+                                  const std::string& model) {
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    if (view.solver == solver && view.model == model && !view.gauge.empty()) return i;
+  }
+  return std::nullopt;
+}
+
+/// The fluid that most corners are filled with.
+std::string common_fluid(const Comparison& comparison) {
+  std::string best;
+  int most = 0;
+  for (const char* model : {"papanastasiou", "bi-viscous"}) {
+    const int filled =
+        corner(comparison, "mpm", model).has_value() + corner(comparison, "foam", model).has_value();
+    if (filled > most) {
+      best = model;
+      most = filled;
+    }
+  }
+  return best;
+}
+
+/// What a reading of the gauge at one time is good to: scatter about its trend, and half the change between
+/// two ways to read the edge.
+double noise_of(const Comparison& comparison, const RunView& view, double time) {
+  double noise = 0.0;
+  if (time < view.gauge.end())
+    if (const auto line = trend(view.gauge, time - 0.5 * scatter_window, time + 0.5 * scatter_window))
+      noise = line->scatter;
+  if (comparison.kind != scenes::Kind::slump) return noise;
+  const Series thin = column(view.run, "spread_1p5_mm", 1e-3), thick = column(view.run, "spread_6_mm", 1e-3);
+  if (thin.empty() || thick.empty()) return noise;
+  const double sensitivity = thin.at(time) - thick.at(time);
+  return ends_in_film(comparison, sensitivity) ? std::hypot(noise, 0.5 * sensitivity) : noise;
+}
+
+std::optional<Square::At> split(const Comparison& comparison, const Square& square, double time) {
+  const auto gauge = [&](const std::optional<std::size_t>& run) {
+    return comparison.runs[*run].gauge_at(time);
+  };
+  const auto mpm_solid = gauge(square.mpm_solid), mpm_fluid = gauge(square.mpm_fluid),
+             foam_solid = gauge(square.foam_solid), foam_fluid = gauge(square.foam_fluid);
+  if (!mpm_solid || !mpm_fluid || !foam_solid || !foam_fluid) return std::nullopt;
+  Square::At at{.time = time};
+  at.total = *foam_fluid - *mpm_solid;
+  at.law = 0.5 * ((*mpm_fluid - *mpm_solid) + (*foam_fluid - *foam_solid));
+  at.discretisation = 0.5 * ((*foam_solid - *mpm_solid) + (*foam_fluid - *mpm_fluid));
+  at.interaction = 0.5 * ((*foam_fluid - *foam_solid) - (*mpm_fluid - *mpm_solid));
+  for (const auto& run : {square.mpm_solid, square.mpm_fluid, square.foam_solid, square.foam_fluid})
+    at.noise = std::hypot(at.noise, noise_of(comparison, comparison.runs[*run], time));
+  return at;
+}
+
+}  // namespace
+
+void fill_square(Comparison& comparison) {
+  Square square;
+  square.fluid = common_fluid(comparison);
+  if (square.fluid.empty()) return;
+  const std::pair<std::optional<std::size_t> Square::*, std::pair<const char*, std::string>> corners[] = {
+      {&Square::mpm_solid, {"mpm", "elasto-viscoplastic"}},
+      {&Square::mpm_fluid, {"mpm", square.fluid}},
+      {&Square::foam_solid, {"foam", "elasto-viscoplastic"}},
+      {&Square::foam_fluid, {"foam", square.fluid}}};
+  int filled = 0;
+  for (const auto& [member, made_by] : corners) {
+    square.*member = corner(comparison, made_by.first, made_by.second);
+    filled += (square.*member).has_value();
+    if (!(square.*member)) square.missing.push_back(command_for(comparison, made_by.first, made_by.second));
+  }
+  if (filled < 2) return;
+  if (filled == 4)
+    for (const double time : comparison.frames)
+      if (const auto at = split(comparison, square, time)) square.at.push_back(*at);
+  comparison.square = std::move(square);
+}
+
+}  // namespace flowrest::compare
