@@ -41,13 +41,23 @@ void add_exact(CLI::App& app) {
   });
 }
 
+/// A report without figures for papers is still a report.
+void try_figures(const Comparison& comparison, const std::string& report) {
+  try {
+    write_figures(comparison, report);
+  } catch (const runs::MissingProgram& missing) {
+    fmt::print("Note: no figures for papers: {}\n", missing.what());
+  }
+}
+
 void add_compare(CLI::App& app) {
   struct Arguments {
     std::vector<std::string> runs;
     std::string output = "report";
     double spread_rate_mm = 0.0;
     Options options;
-    bool json = false;
+    bool no_figures = false, json = false;
+    std::string clip;
   };
   auto arguments = std::make_shared<Arguments>();
   arguments->spread_rate_mm = 1e3 * arguments->options.rest_spread_rate;
@@ -69,12 +79,26 @@ void add_compare(CLI::App& app) {
                    "The last seconds of a run over which its residual speed is taken, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_flag("--no-figures", arguments->no_figures,
+                    "Leave out the figures for papers (figures/*.svg and *.png)");
+  command
+      ->add_option(
+          "--clip", arguments->clip,
+          "Also write particles beside cells as a clip into the report's folder: NAME.webm or NAME.gif")
+      ->check([](const std::string& name) {
+        return name.ends_with(".webm") || name.ends_with(".gif")
+                   ? ""
+                   : "'" + name + "' ends neither in .webm nor in .gif";
+      });
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
     arguments->options.rest_spread_rate = 1e-3 * arguments->spread_rate_mm;
     const std::vector<std::filesystem::path> named(arguments->runs.begin(), arguments->runs.end());
     const Comparison comparison = compare_runs(find_runs(named), arguments->options);
     write_comparison(comparison, arguments->output);
+    if (!arguments->no_figures) try_figures(comparison, arguments->output);
+    if (!arguments->clip.empty())
+      write_clip(comparison, std::filesystem::path(arguments->output) / arguments->clip);
     for (const std::string& note : comparison.notes) fmt::print("Note: {}\n", note);
     for (const Finding& finding : comparison.findings) fmt::print("{}\n", finding.text);
     const std::string page =

@@ -168,4 +168,14 @@ nlohmann::ordered_json to_json(const Comparison&);
 /// Writes comparison.json, measures.csv, spread.csv (velocity.csv of a duct), profiles.csv and index.html.
 void write_comparison(const Comparison&, const std::filesystem::path& report);
 
+/// Writes the page's figures for papers into `report`/figures, as SVG and PNG.
+/// @return how many files.
+/// @throws runs::MissingProgram where gnuplot is not installed.
+std::size_t write_figures(const Comparison&, const std::filesystem::path& report);
+
+/// Writes particles beside cells as a clip, WebM or GIF by its name.
+/// @throws runs::RunError where no run left its states; runs::MissingProgram where gnuplot or ffmpeg is not
+/// installed.
+void write_clip(const Comparison&, const std::filesystem::path& clip);
+
 }  // namespace flowrest::compare

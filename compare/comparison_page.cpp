@@ -73,7 +73,9 @@ std::vector<double> history_times(double from, double end) {
 }
 
 Axis time_axis(const Comparison& comparison) {
-  return {"time", "s", false, true, std::nullopt, comparison.end};
+  // Solvers pass or miss their end by a step: 59.99 s is read as 60.
+  return {"time", "s",          false,
+          true,   std::nullopt, std::max(0.1 * std::round(10.0 * comparison.end), comparison.end)};
 }
 
 Plot gauge_plot(const Comparison& comparison) {
@@ -561,7 +563,7 @@ std::vector<Block> words_of(const Comparison& comparison) {
   std::map<Finding::Topic, std::string> told;
   for (const Finding& finding : comparison.findings) {
     std::string& text = told[finding.topic];
-    text += (text.empty() ? "" : " ") + finding.text;
+    text += (text.empty() ? "" : finding.topic == Finding::Topic::stop ? "\n" : " ") + finding.text;
   }
   if (told.contains(Finding::Topic::opening))
     blocks.push_back(Text{told[Finding::Topic::opening], Text::Style::opening});

@@ -219,6 +219,9 @@ std::string range_sentence(const Comparison& comparison) {
 std::string opening_sentence(const Comparison& comparison) {
   std::vector<std::string> moving, noisy, incomplete;
   const RunView* arrested = nullptr;
+  bool all_fluids = true;
+  // What a run declares counts before what is read off its record, a sound run before a noisy one.
+  const auto rank = [](const RunView& view) { return 2 * view.held + !view.noisy; };
   for (const RunView& view : comparison.runs) {
     if (view.exact) continue;
     if (view.noisy) noisy.push_back(view.label);
@@ -226,10 +229,10 @@ std::string opening_sentence(const Comparison& comparison) {
     if (view.gauge.empty() || !view.trouble.empty()) continue;
     const bool rests = view.held || view.measures.cause == Cause::at_rest ||
                        (view.measures.stop_after_step && view.measures.cause != Cause::creep);
-    if (!rests)
-      moving.push_back(view.label);
-    else if (!arrested || (arrested->noisy && !view.noisy))
-      arrested = &view;
+    if (rests && (!arrested || rank(view) > rank(*arrested))) arrested = &view;
+    if (rests) continue;
+    moving.push_back(view.label);
+    all_fluids = all_fluids && view.fluid;
   }
   std::string text;
   if (arrested && comparison.kind == scenes::Kind::slump) {
@@ -244,8 +247,11 @@ std::string opening_sentence(const Comparison& comparison) {
                        words::time(*arrested->measures.stop_after_step));
   }
   const auto add = [&](const std::string& clause) { text += (text.empty() ? "" : "; ") + clause; };
+  const std::string who = moving.size() > 2 && all_fluids
+                              ? fmt::format("the {} regularised fluids", moving.size())
+                              : listed(moving);
   if (!moving.empty())
-    add(fmt::format("{} {} still moving at {}", listed(moving), moving.size() == 1 ? "is" : "are",
+    add(fmt::format("{} {} still moving at {}", who, moving.size() == 1 ? "is" : "are",
                     words::time(comparison.end)));
   if (!noisy.empty()) add(fmt::format("noisy: {}", listed(noisy)));
   if (!incomplete.empty()) add(fmt::format("incomplete: {}", listed(incomplete)));

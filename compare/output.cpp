@@ -6,6 +6,8 @@
 
 #include "compare/comparison.h"
 #include "compare/comparison_page.h"
+#include "compare/fields/section.h"
+#include "compare/report/figures.h"
 
 namespace flowrest::compare {
 
@@ -259,6 +261,19 @@ void write_comparison(const Comparison& comparison, const std::filesystem::path&
                          gauge_csv(comparison));
   runs::write_atomically(report / "profiles.csv", profiles_csv(comparison));
   runs::write_atomically(report / "index.html", page);
+}
+
+std::size_t write_figures(const Comparison& comparison, const std::filesystem::path& report) {
+  return report::write_figures(page_of(comparison, to_json(comparison)), report / "figures").size();
+}
+
+void write_clip(const Comparison& comparison, const std::filesystem::path& clip) {
+  constexpr std::size_t most_times = 120, most_bytes = 200'000'000;
+  const auto section = fields::section_of(comparison, most_times, most_bytes);
+  if (!section)
+    throw runs::RunError(
+        "no run of this comparison left particles or a case: there is nothing to make a clip of");
+  report::write_clip(page_of(comparison, to_json(comparison)), *section, clip);
 }
 
 }  // namespace flowrest::compare

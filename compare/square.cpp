@@ -13,7 +13,8 @@ namespace flowrest::compare {
 
 namespace {
 
-constexpr double scatter_window = 2.0;  // s, over which a run's scatter is taken
+constexpr double scatter_window =
+    0.5;  // s, over which a run's scatter is taken: short, for a collapse is no straight line
 
 /// The first run of a solver and model that has a gauge.
 std::optional<std::size_t> corner(const Comparison& comparison, const std::string& solver,

@@ -201,7 +201,8 @@ std::array<double, 4> extent_of(const std::vector<Source>& sources) {
 
 }  // namespace
 
-std::optional<report::Section> section_of(const Comparison& comparison, std::size_t budget) {
+std::optional<report::Section> section_of(const Comparison& comparison, std::size_t most_times,
+                                          std::size_t budget) {
   if (comparison.kind == scenes::Kind::duct) return std::nullopt;
   std::vector<Source> sources;
   std::size_t recordings = 0;
@@ -214,7 +215,6 @@ std::optional<report::Section> section_of(const Comparison& comparison, std::siz
   }
   if (recordings == 0) return std::nullopt;
 
-  constexpr std::size_t most_times = 18;
   const auto times = chosen_times(sources, comparison.end, most_times);
   for (Source& source : sources)
     if (source.recording) read_states(source, times);

@@ -100,6 +100,15 @@ std::string html_of(const Details& details) {
   return html + "</details>\n";
 }
 
+std::string html_of(const Answer& answer) {
+  std::string paragraphs;
+  for (std::size_t from = 0, to = 0; to != std::string::npos; from = to + 1) {
+    to = answer.text.find('\n', from);
+    paragraphs += fmt::format("<dd>{}</dd>", prose(answer.text.substr(from, to - from)));
+  }
+  return fmt::format("<div><dt>{}</dt>{}</div>\n", prose(answer.question), paragraphs);
+}
+
 /// Writes blocks as HTML and gathers the figures among them, which the script draws.
 class Writer {
  public:
@@ -112,9 +121,7 @@ class Writer {
       const auto* answer = std::get_if<Answer>(&block);
       if (answering != (answer != nullptr)) text += answer ? "<dl class=\"answers\">\n" : "</dl>\n";
       answering = answer != nullptr;
-      text += answer ? fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", prose(answer->question),
-                                   prose(answer->text))
-                     : html(block);
+      text += answer ? html_of(*answer) : html(block);
     }
     return answering ? text + "</dl>\n" : text;
   }

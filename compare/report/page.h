@@ -36,7 +36,8 @@ struct Text {
   Style style = Style::plain;
 };
 
-/// A short answer under a short question; several in a row make the first screen.
+/// A short answer under a short question; several in a row make the first screen. A line break begins a
+/// paragraph.
 struct Answer {
   std::string question = {}, text = {};
 };
@@ -198,8 +199,8 @@ struct Page {
   std::vector<Block> words = {};     ///< first screen: what was found
   std::optional<Block> figure = {};  ///< first screen: the one figure
   std::vector<Chapter> chapters = {};
-  nlohmann::ordered_json data = {};   ///< offered as KIND.json
-  nlohmann::ordered_json provenance;  ///< runs::provenance()
+  nlohmann::ordered_json data = {};        ///< offered as KIND.json
+  nlohmann::ordered_json provenance = {};  ///< runs::provenance()
 };
 
 /// The page as HTML that needs no network.

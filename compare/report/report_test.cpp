@@ -10,7 +10,10 @@
 #include "compare/comparison.h"
 #include "compare/exact/exact_run.h"
 #include "compare/report/browser.h"
+#include "compare/report/figures.h"
+#include "compare/report/page.h"
 #include "compare/synthetic_runs.h"
+#include "runs/process.h"
 
 using namespace flowrest;
 using namespace flowrest::compare;
@@ -313,6 +316,123 @@ TEST_F(OpenedReportTest, PrintsToACleanPdf) {
   EXPECT_EQ(page().evaluate("document.documentElement.dataset.theme"), "dark");
   if (const char* kept = std::getenv("FLOWREST_SCREENSHOTS"))
     std::ofstream(fs::path(kept) / "report.pdf", std::ios::binary) << pdf;
+}
+
+/// A validation as it may come to be: scenes of four runs each, and a map.
+report::Page large_page(int scenes) {
+  report::Page page{.kind = "validation", .title = "All scenes"};
+  for (const char* name : {"MPM solid", "MPM fluid", "OpenFOAM solid", "OpenFOAM fluid"}) {
+    const int index = static_cast<int>(page.entries.size());
+    page.entries.push_back({.name = name, .colour = index % 2, .dash = index / 2});
+  }
+  page.entries.back().noise = "the residual rose";
+  page.words = {report::Text{"Thirty scenes hold.", report::Text::Style::opening}};
+  report::Plot pareto{
+      .id = "pareto", .title = "error against cost", .x = {"CPU time", "s", true}, .y = {"error", "%", true}};
+  pareto.curves.push_back({.entry = 0,
+                           .x = {2.0, 20.0},
+                           .y = {4.0, 1.0},
+                           .hover = {"cell 20 mm", "cell 10 mm\nAPIC"},
+                           .marks = true});
+  page.figure = pareto;
+  for (int scene = 0; scene < scenes; ++scene) {
+    const std::string id = "scene-" + std::to_string(scene);
+    report::Plot plot{.id = id + "-spread", .title = id, .x = {"time", "s"}, .y = {"spread", "mm"}};
+    report::Table table{.id = id + "-table", .title = id, .columns = {{"Run"}, {"Spread", "mm"}}};
+    for (int run = 0; run < 4; ++run) {
+      report::Curve curve{.entry = run};
+      for (int i = 0; i < 300; ++i) {
+        curve.x.push_back(0.2 * i);
+        curve.y.push_back(500.0 + 10.0 * run + 0.1 * i);
+      }
+      plot.curves.push_back(curve);
+      table.rows.push_back(
+          {.cells = {page.entries[static_cast<std::size_t>(run)].name, 530.0 + run}, .entry = run});
+    }
+    page.chapters.push_back({.id = id, .heading = id, .blocks = {plot, table}});
+  }
+  report::Map map{.id = "map",
+                  .title = "stability",
+                  .row_name = "yield stress",
+                  .column_name = "CFL",
+                  .rows = {"0", "50"},
+                  .columns = {"0.5", "3"}};
+  map.cells = {{0, 0, report::Map::Verdict::sound, "", ""},
+               {1, 1, report::Map::Verdict::refused, "", "CFL above 1"}};
+  page.chapters.push_back({.id = "extremes", .heading = "Extremes", .blocks = {map}});
+  return page;
+}
+
+TEST_F(OpenedReportTest, ThirtyScenesOfFourRunsOpenAtOnce) {
+  const std::string html = report::render(large_page(30));
+  EXPECT_LT(html.size(), 3'000'000u);
+  fs::create_directories(folder / "large");
+  std::ofstream(folder / "large" / "index.html", std::ios::binary) << html;
+  open("", "large");
+  ASSERT_TRUE(page().wait_for("document.documentElement.dataset.drawn > 0"));
+  EXPECT_EQ(page().evaluate("document.documentElement.dataset.figures"), "62");
+  EXPECT_LT(page().evaluate("Number(document.documentElement.dataset.drawn)").get<int>(), 20);
+  show("scene-29-spread");
+  EXPECT_EQ(page().evaluate("document.querySelectorAll('#scene-29-spread .badge').length"), 1);
+  // The settings behind a point, on hover.
+  show("pareto");
+  const auto [x, y] = page().place_of("#pareto canvas");
+  page().point(x, y);
+  EXPECT_TRUE(page().wait_for(
+      "(() => { const t = Chart.getChart(document.querySelector('#pareto canvas')).tooltip; return t && "
+      "t.body && t.body.some(b => b.lines.includes('APIC') || b.lines.includes('cell 20 mm')); })()"));
+  show("map");
+  EXPECT_EQ(page().evaluate("document.querySelector('#map td.refused').title"),
+            "refused beforehand: CFL above 1");
+}
+
+TEST(Page, RefusesWhatCannotBeDrawn) {
+  report::Page page = large_page(1);
+  page.chapters[0].blocks.push_back(page.chapters[0].blocks[0]);
+  EXPECT_THROW(report::render(page), std::logic_error) << "an id twice";
+  page = large_page(1);
+  std::get<report::Plot>(*page.figure).curves[0].y.pop_back();
+  EXPECT_THROW(report::render(page), std::logic_error) << "x and y of different length";
+  page = large_page(1);
+  std::get<report::Table>(page.chapters[0].blocks[1]).rows[0].cells.pop_back();
+  EXPECT_THROW(report::render(page), std::logic_error) << "a row that is too short";
+}
+
+TEST_F(ReportTest, FiguresForPapersAreDrawnAndCanBeDrawnAgain) {
+  if (!runs::find_program("gnuplot"))
+    GTEST_SKIP() << "gnuplot is not installed (apt-get install gnuplot-nox)";
+  const auto written = report::write_figures(large_page(1), folder / "figures");
+  EXPECT_THAT(written, testing::UnorderedElementsAre("pareto.svg", "pareto.png", "scene-0-spread.svg",
+                                                     "scene-0-spread.png"));
+  EXPECT_THAT(text_of(folder / "figures" / "scene-0-spread.svg"),
+              testing::AllOf(HasSubstr("All scenes: scene-0"), HasSubstr("spread (mm)"),
+                             HasSubstr("OpenFOAM fluid (noisy)")));
+  EXPECT_THAT(text_of(folder / "figures" / "pareto.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_GT(fs::file_size(folder / "figures" / "pareto.png"), 10'000u);
+  EXPECT_TRUE(fs::exists(folder / "figures" / "figures.gp"));
+  EXPECT_FALSE(fs::exists(folder / "figures" / "log.gnuplot"));
+}
+
+TEST_F(ReportTest, AClipShowsEveryTimeOfASection) {
+  if (!runs::find_program("gnuplot") || !runs::find_program("ffmpeg"))
+    GTEST_SKIP() << "gnuplot or ffmpeg is not installed (apt-get install gnuplot-nox ffmpeg)";
+  report::Page page = large_page(0);
+  report::Section section{
+      .id = "section", .title = "particles", .x = {"radius", "mm"}, .z = {"height", "mm"}};
+  section.x.from = section.z.from = 0.0;
+  section.x.to = section.z.to = 300.0;
+  section.quantities = {{.name = "shear rate", .unit = "1/s", .from = 1e-3, .to = 10.0, .logarithmic = true}};
+  report::Section::Panel panel{.entry = 0, .size = 10.0};
+  for (const double time : {0.0, 1.0, 2.0}) {
+    section.times.push_back(time);
+    panel.frames.push_back({.time = time, .x = {100, 30000}, .z = {100, 20000}, .values = {{10, 200}}});
+  }
+  section.panels = {panel};
+  report::write_clip(page, section, folder / "clip.gif", true);
+  EXPECT_THAT(text_of(folder / "clip.gif"), testing::StartsWith("GIF89a"));
+  report::write_clip(page, section, folder / "clip.webm", true);
+  EXPECT_THAT(text_of(folder / "clip.webm"), testing::StartsWith("\x1a\x45\xdf\xa3"));
+  EXPECT_FALSE(fs::exists(folder / "clip.webm.frames"));
 }
 
 TEST_F(OpenedReportTest, ADuctAndARunWithoutARowOpenToo) {

@@ -117,7 +117,7 @@ const drawSection = (block, body) => {
   const paint = () => {
     const visible = panels.filter(panel => panel.entry.shown && !panel.panel.missing && panel.frames.length);
     const top = visible.reduce((most, panel) => Math.max(most, topOf(panel, panel.frames[nearestFrame(panel.frames.map(f => f.time), shownTime)])), 0) - z.from;
-    const stretch = top > 0 ? Math.max(1, Math.min(8, Math.floor(high / (1.15 * top)))) : 1;
+    const stretch = top > 0 ? Math.max(1, Math.min(8, Math.floor(high / (1.2 * top)))) : 1;
     for (const panel of panels) panel.node.hidden = !panel.entry.shown;
     for (const panel of visible) paintPanel(panel, shownTime, stretch);
   };
