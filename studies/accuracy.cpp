@@ -131,6 +131,9 @@ Json knowledge_json(const Results& results) {
         !r.errors.contains(quantity) || !is_means(r))
       continue;
     if (scene && scene->geometry.dimension != r.point.scene->geometry.dimension) continue;
+    // Held against a reference of another law, an error is the law's and no setting mends it.
+    const auto law = results.study.reference.model;
+    if (law && *law != r.point.scene->material.model) continue;
     scene = &*r.point.scene;
     made_by = fmt::format("flowrest {} on {}", r.version, r.machine);
     points.push_back(point_json(r, quantity));

@@ -420,7 +420,14 @@ void find_findings(Results& results) {
                                  [&](const auto& q) { return results.reference.contains(q); });
   // A study that seeks a limit varies what is simulated: nearness to the reference is no merit of a run's.
   if (main == results.study.quantities.end() || results.study.limit) return;
-  for (const double bound : {0.05, 0.02, 0.01}) {
+  const double floor = relative_uncertainty(*main, results.reference.at(*main));
+  if (floor > 0.0)
+    results.findings.push_back(
+        fmt::format("Errors of {} below {} cannot be told apart: the reference itself is that "
+                    "uncertain.",
+                    *main, compare::words::percent(floor)));
+  for (const double bound : {0.1, 0.05, 0.02, 0.01}) {
+    if (bound < floor) break;
     for (const Solver solver : {Solver::mpm, Solver::foam}) {
       const Result* cheapest = nullptr;
       for (const Result& r : results.results)

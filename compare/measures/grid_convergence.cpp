@@ -17,26 +17,34 @@ constexpr double safety = 1.25;
 /// Below this order an extrapolation multiplies whatever noise there is.
 constexpr double least_order = 0.5;
 
-/// Celik et al. 2008, Eq. 3, solved by fixed-point iteration from q = 0 as they propose; `shrinking` is
-/// |eps32 / eps21|, s its sign.
-double order_of(double r21, double r32, double ratio) {
-  const double s = ratio < 0.0 ? -1.0 : 1.0, shrinking = std::log(std::abs(ratio));
-  double p = std::abs(shrinking) / std::log(r21);
-  for (int i = 0; i < 500; ++i) {
-    const double q = std::log((std::pow(r21, p) - s) / (std::pow(r32, p) - s));
-    const double next = std::abs(shrinking + q) / std::log(r21);
-    if (!std::isfinite(next)) break;
-    if (std::abs(next - p) < 1e-12 * std::max(1.0, p)) return next;
-    p = 0.5 * (p + next);  // damped: the plain iteration cycles where r21 and r32 differ much
-  }
-  return p;
+/// |eps32 / eps21| of an error that goes as h^p, or of one that alternates as it does: Celik et al. 2008, Eq.
+/// 3, solved for the ratio. It grows with p.
+double ratio_of(double r21, double r32, double p, double s) {
+  return std::pow(r21, p) * (std::pow(r32, p) - s) / (std::pow(r21, p) - s);
 }
 
-Convergence kind_of(double eps21, double eps32, double scale) {
+/// No scheme is of a higher order; what seems to be is chance.
+constexpr double largest_order = 20.0;
+
+/// The order p of Eq. 3, by bisection: their fixed-point iteration runs away where r32 is larger than r21.
+/// None where no positive order makes changes shrink as slowly as these.
+std::optional<double> order_of(double r21, double r32, double ratio) {
+  const double s = ratio < 0.0 ? -1.0 : 1.0, size = std::abs(ratio);
+  const double at_zero = s > 0.0 ? std::log(r32) / std::log(r21) : 1.0;  // the limit for p to 0
+  if (size <= at_zero) return std::nullopt;
+  double low = 0.0, high = largest_order;
+  for (int i = 0; i < 200; ++i) {
+    const double p = 0.5 * (low + high);
+    (ratio_of(r21, r32, p, s) < size ? low : high) = p;
+  }
+  return 0.5 * (low + high);
+}
+
+Convergence kind_of(double eps21, double eps32, double scale, bool has_order) {
   const double round_off = 64.0 * std::numeric_limits<double>::epsilon() * scale;
   if (std::abs(eps21) <= round_off && std::abs(eps32) <= round_off) return Convergence::unchanging;
-  const bool alternates = eps21 * eps32 < 0.0, shrinks = std::abs(eps21) < std::abs(eps32);
-  if (shrinks) return alternates ? Convergence::oscillatory : Convergence::monotone;
+  const bool alternates = eps21 * eps32 < 0.0;
+  if (has_order) return alternates ? Convergence::oscillatory : Convergence::monotone;
   return alternates ? Convergence::oscillatory_diverging : Convergence::diverging;
 }
 
@@ -102,9 +110,10 @@ std::string GridConvergence::words() const {
     case Convergence::oscillatory:
       return fmt::format("not monotone: it oscillates as it converges (apparent order {:.2f})", *order);
     case Convergence::diverging:
-      return "not converging: the change grows as the grid is refined";
+      return "not converging: the change does not shrink as the grid is refined";
     case Convergence::oscillatory_diverging:
-      return "not monotone and not converging: the change alternates and grows as the grid is refined";
+      return "not monotone and not converging: the change alternates and does not shrink as the grid is "
+             "refined";
     case Convergence::unchanging:
       return "the same on every grid to round-off";
   }
@@ -125,26 +134,22 @@ GridConvergence grid_convergence(GridValue a, GridValue b, GridValue c, double f
   const auto [least, most] = std::minmax({f1, f2, f3});
 
   GridConvergence result;
-  result.convergence = kind_of(eps21, eps32, std::max(std::abs(least), std::abs(most)));
+  // Two finer grids that agree exactly leave nothing to extrapolate.
+  const auto p = eps21 == 0.0 ? std::optional(std::numeric_limits<double>::infinity())
+                              : order_of(r21, r32, eps32 / eps21);
+  result.convergence = kind_of(eps21, eps32, std::max(std::abs(least), std::abs(most)), p.has_value());
   result.relative_change = f1 != 0.0 ? std::abs(eps21 / f1) : 0.0;
   result.uncertainty = 3.0 * (most - least);
   if (result.convergence == Convergence::unchanging) return result;
-  const bool shrinks =
-      result.convergence == Convergence::monotone || result.convergence == Convergence::oscillatory;
-  if (!shrinks) return result;
-  if (eps21 == 0.0) {  // the two finer grids agree exactly: no order, and nothing left to extrapolate
-    result.order = std::numeric_limits<double>::infinity();
-    result.extrapolated = f1;
-    return result;
-  }
-  const double p = order_of(r21, r32, eps32 / eps21), growth = std::pow(r21, p) - 1.0;
-  result.order = p;
+  if (!p) return result;
+  const double order = *p, growth = std::pow(r21, order) - 1.0;
+  result.order = order;
   result.extrapolated = f1 - eps21 / growth;  // Eq. 5: (r21^p f1 - f2) / (r21^p - 1)
   if (*result.extrapolated != 0.0)
     result.relative_error = std::abs((*result.extrapolated - f1) / *result.extrapolated);
   if (f1 != 0.0) result.fine_index = safety * result.relative_change / growth;
   if (result.convergence == Convergence::monotone) {
-    const double held = std::clamp(p, least_order, formal_order);
+    const double held = std::clamp(order, least_order, formal_order);
     result.uncertainty = safety * std::abs(eps21) / (std::pow(r21, held) - 1.0);
   }
   return result;

@@ -75,6 +75,22 @@ TEST(GridConvergence, RefusesToExtrapolateWhatDoesNotConverge) {
   EXPECT_THROW(grid_convergence({0.0, 2.0}, {1.0, 2.1}, {4.0, 2.0}), std::invalid_argument);
 }
 
+TEST(GridConvergence, ChangesThatShrinkLessThanTheGridsDoHaveNoOrder) {
+  // From 1.6 to 1 the cell changes 2.1 times as much, on a logarithmic scale, as from 1.25 to 1: a change
+  // that is only 1.5 times as large does not shrink, though it is smaller.
+  const auto slow = grid_convergence({0.005, 30.0}, {0.00625, 26.0}, {0.010, 20.0});
+  EXPECT_EQ(slow.convergence, Convergence::diverging);
+  EXPECT_FALSE(slow.order);
+  EXPECT_DOUBLE_EQ(slow.uncertainty, 30.0);
+  const auto value = [](double h) { return 5.0 + h; };
+  const auto first =
+      grid_convergence({0.005, value(0.005)}, {0.00625, value(0.00625)}, {0.010, value(0.010)});
+  EXPECT_NEAR(*first.order, 1.0, 1e-9);
+  const auto agreed = grid_convergence({1.0, 3.0}, {2.0, 3.0}, {4.0, 3.5});
+  EXPECT_EQ(agreed.convergence, Convergence::monotone);
+  EXPECT_DOUBLE_EQ(*agreed.extrapolated, 3.0);
+}
+
 TEST(GridConvergence, AnOrderAboveTheSchemesDoesNotShrinkTheUncertainty) {
   const auto value = [](double h) { return 1.0 + h * h * h * h; };
   const auto g = grid_convergence({0.5, value(0.5)}, {1.0, value(1.0)}, {2.0, value(2.0)});
