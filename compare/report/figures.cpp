@@ -340,7 +340,7 @@ std::string section_style(const Section& section) {
                            viridis[i][2]);
   return fmt::format(
       "set palette defined ({})\nset cbrange [{:.6g}:{:.6g}]\n{}"
-      "set colorbox horizontal user origin 0.25,0.09 size 0.5,0.018\nset cblabel {} offset 0,0.3\n"
+      "set colorbox horizontal user origin 0.25,0.085 size 0.5,0.018\nset cblabel {} offset 0,0.3\n"
       "set cbtics nomirror\nset xrange [{:.6g}:{:.6g}]\nset xtics 0,200\nunset key\nunset grid\n",
       palette, quantity.from, quantity.to,
       quantity.logarithmic ? "set logscale cb; set format cb '%g'\n" : "",
@@ -395,7 +395,7 @@ void run_program(const std::string& name, const std::string& package,
 std::string clip_frame(const Page& page, const Section& section, std::size_t number, double top) {
   const int panels = panels_of(section), columns = std::min(3, panels), lines = (panels + 2) / 3;
   // Video wants even sizes.
-  const int width = 100 + 360 * columns, height = 180 + 240 * lines;
+  const int width = 100 + 360 * columns, height = 240 + 240 * lines;
   Script script;
   reset(script, "");
   script.line(section_style(section));
@@ -406,7 +406,7 @@ std::string clip_frame(const Page& page, const Section& section, std::size_t num
   script.line(
       fmt::format("set multiplot layout {},{} title {} margins {:.3f},0.98,{:.3f},{:.3f} spacing "
                   "0.06,{:.3f}\n{}unset multiplot",
-                  lines, columns, quoted(page.title), 90.0 / width, 115.0 / height, 1.0 - 70.0 / height,
+                  lines, columns, quoted(page.title), 90.0 / width, 155.0 / height, 1.0 - 90.0 / height,
                   75.0 / height, plots));
   return script.text();
 }

@@ -41,11 +41,14 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-/// Text of the page in which no number is parted from its unit at the end of a line.
+/// Text of the page in which no number is parted from its unit at the end of a line; what stands between
+/// backticks is a command.
 std::string prose(const std::string& text) {
-  static const std::regex unit("([0-9]) (mm/s|mm|cm|m/s|m|s|min|h|%|Pa|kg|MiB|GiB)\\b"), plus_minus(" ± ");
-  return std::regex_replace(std::regex_replace(escaped(text), unit, "$1&nbsp;$2"), plus_minus,
-                            "&nbsp;±&nbsp;");
+  static const std::regex unit("([0-9]) (mm/s|mm|cm|m/s|m|s|min|h|%|Pa|kg|MiB|GiB)\\b"), plus_minus(" ± "),
+      command("`([^`]*)`");
+  std::string html = std::regex_replace(escaped(text), unit, "$1&nbsp;$2");
+  html = std::regex_replace(html, plus_minus, "&nbsp;±&nbsp;");
+  return std::regex_replace(html, command, "<code>$1</code>");
 }
 
 /// JSON that may stand inside a script element: "</script" and "<!--" would end or change it; within JSON

@@ -110,7 +110,7 @@ TEST_F(ReportTest, StandsByItself) {
   EXPECT_THAT(first, HasSubstr("noisy: OpenFOAM papanastasiou.</p>"))
       << "the first sentence lacks the warning";
   EXPECT_THAT(first, HasSubstr("noisy: the initial residual rose to 0.12"));
-  EXPECT_THAT(first, HasSubstr("(make it by `flowrest foam roussel-slump --model bi-viscous`)"));
+  EXPECT_THAT(first, HasSubstr("(make it by <code>flowrest foam roussel-slump --model bi-viscous</code>)"));
 }
 
 TEST_F(ReportTest, TextOfASceneIsNoMarkup) {
@@ -263,6 +263,7 @@ TEST_F(OpenedReportTest, LightAndDark) {
   page().prefer("dark");
   show("spread");
   const std::string ground = "getComputedStyle(document.body.parentElement).backgroundColor";
+  ASSERT_TRUE(page().wait_for(ground + " != 'rgb(255, 255, 255)'")) << "dark is not heeded";
   const auto dark = page().evaluate(ground);
   page().evaluate("window.scrollTo(0, 0)");
   look("dark");
@@ -273,7 +274,7 @@ TEST_F(OpenedReportTest, LightAndDark) {
   const auto [x, y] = page().place_of("#theme");
   page().click(x, y);
   page().click(x, y);
-  EXPECT_EQ(page().evaluate(ground), dark) << "the button does not choose dark";
+  EXPECT_TRUE(page().wait_for(ground + " == " + dark.dump())) << "the button does not choose dark";
   EXPECT_EQ(page().evaluate("location.hash"), "#theme=dark");
 }
 
