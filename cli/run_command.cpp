@@ -269,7 +269,11 @@ int run_scene(const std::string& named, const RunCommandOptions& options) {
   for (const auto& job : jobs) made.push_back(job.directory);
   int code = Scheduler(std::move(jobs), at_once, logs).run();
 #ifdef FLOWREST_HAS_COMPARE
-  if (code != 130) {
+  const bool comparable = scene.kind == scenes::Kind::slump || scene.kind == scenes::Kind::duct;
+  if (!comparable)
+    fmt::print("{}: runs of this kind ({}) are not compared in a report\n", scene.name,
+               scenes::to_string(scene.kind));
+  if (code != 130 && comparable) {
     const int compared = compare_runs(scene, named, folder, made, options);
     if (code == 0) code = compared;
   }

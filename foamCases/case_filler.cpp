@@ -105,7 +105,7 @@ std::string phase_parameters(const Scene& scene) {
       scene.foam.air_density, scene.foam.air_kinematic_viscosity, scene.material.density);
 }
 
-const char* wall(const Scene& scene) { return scene.base == scenes::Wall::slip ? "slip" : "noSlip"; }
+const char* wall(const Scene& scene) { return scene.base.law == scenes::Wall::slip ? "slip" : "noSlip"; }
 
 std::string slump_parameters(const Scene& scene) {
   return mesh_parameters(scene) + time_parameters(scene) +

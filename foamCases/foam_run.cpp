@@ -47,6 +47,20 @@ fs::path needed_program(const std::string& name) {
       "{} is not on the PATH: `flowrest foam` needs OpenFOAM (Debian: apt-get install openfoam)", name));
 }
 
+/// @throws SceneError
+void refuse_what_no_case_has(const scenes::Scene& scene) {
+  const auto refuse = [&](const std::string& what) {
+    throw scenes::SceneError(
+        fmt::format("{}: OpenFOAM has no {} yet; allowed: slumps and ducts between walls without "
+                    "friction, without a mould",
+                    scene.path.string(), what));
+  };
+  if (scene.kind != scenes::Kind::slump && scene.kind != scenes::Kind::duct)
+    refuse("case of a " + scenes::to_string(scene.kind));
+  if (scene.base.law == scenes::Wall::friction) refuse("wall with friction");
+  if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity) refuse("mould that is lifted");
+}
+
 Programs needed_programs(const scenes::Scene& scene) {
   if (scene.kind == scenes::Kind::duct) return {{needed_program("blockMesh")}, needed_program("interFoam")};
   return {{needed_program("blockMesh"), needed_program("setAlphaField"), needed_program("setFields")},
@@ -282,6 +296,7 @@ class CaseRun {
 RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
   check_supported(scene);
   plug_in_for(scene);  // it says what is missing before anything is written
+  refuse_what_no_case_has(scene);
   const auto outcome = CaseRun(scene, options, needed_programs(scene)).run();
   if (outcome.status == Status::failed)
     throw runs::NumericsError(

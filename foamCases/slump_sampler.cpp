@@ -41,7 +41,7 @@ void SlumpSampler::sample(double time, const fs::path& directory) {
     state_.flocculation = mean_over_concrete(grid_, fields.fraction, flocculation);
   }
   const auto gauges =
-      gauge_slump(grid_, fields, scene().material.density, scene().base == scenes::Wall::slip);
+      gauge_slump(grid_, fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   if (time == 0.0) state_.first_volume = gauges.volume;
   state_.time = time;
   state_.spread = runs::spread(gauges.radius, gauges.depth);

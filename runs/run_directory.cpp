@@ -153,6 +153,10 @@ std::string profile_header(scenes::Kind kind) {
       return "time_s,r_m,depth_m";
     case scenes::Kind::duct:
       return "time_s,y_m,velocity_m_s";
+    case scenes::Kind::l_box:
+    case scenes::Kind::v_funnel:
+    case scenes::Kind::dam_break:
+      return "time_s,x_m,depth_m";
   }
   throw std::logic_error("a kind of scene without profiles");
 }

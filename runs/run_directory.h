@@ -60,7 +60,7 @@ class RunWriter {
   void history(std::span<const double> row);
 
   /// Appends one profile: rows (time, coordinate, value). The columns follow the scene's kind:
-  /// slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s.
+  /// slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s; others time_s,x_m,depth_m.
   void profile(double time, std::span<const double> coordinate, std::span<const double> value);
 
   /// run.json: any key may be set; written out by `write` and by `finish`.

@@ -49,14 +49,31 @@ std::vector<Model> models_in_use(const Scene& scene) {
   return models;
 }
 
+std::vector<Dimension> dimensions_of(Kind kind) {
+  switch (kind) {
+    case Kind::slump:
+      return {Dimension::axisymmetric, Dimension::plane, Dimension::quarter, Dimension::full};
+    case Kind::duct:
+      return {Dimension::plane};
+    case Kind::l_box:
+      return {Dimension::plane, Dimension::half, Dimension::full};
+    case Kind::v_funnel:
+      return {Dimension::plane, Dimension::quarter, Dimension::full};
+    case Kind::dam_break:
+      return {Dimension::plane, Dimension::full};
+  }
+  return {};
+}
+
 void check_dimension(const Case& c) {
   const Dimension dimension = c.scene().geometry.dimension;
   if (!c.usable({"geometry.dimension"})) return;
-  if (c.scene().kind == Kind::duct && dimension != Dimension::plane) {
-    c.fault("geometry.dimension",
-            fmt::format("geometry.dimension is {}, which does not suit a duct; allowed: plane",
-                        to_string(dimension)));
-  }
+  const std::vector<Dimension> allowed = dimensions_of(c.scene().kind);
+  if (std::find(allowed.begin(), allowed.end(), dimension) != allowed.end()) return;
+  std::vector<std::string> names;
+  for (const Dimension one : allowed) names.push_back(to_string(one));
+  c.fault("geometry.dimension", fmt::format("geometry.dimension is {}, which does not suit a {}; allowed: {}",
+                                            to_string(dimension), to_string(c.scene().kind), joined(names)));
 }
 
 void check_cone_fits(const Case& c) {
@@ -100,6 +117,8 @@ void check_slump_cells(const Case& c) {
 /// The plates lie on grid lines, where a wall is exact.
 void check_duct_cells(const Case& c) {
   if (!c.usable({"geometry.height", "mpm.cell"})) return;
+  if (c.scene().base.law == Wall::friction)
+    c.fault("walls.base", "walls.base has friction, which does not suit a duct; allowed: no-slip, slip");
   const double height = c.scene().duct().height;
   const double cells = height / c.scene().mpm.cell;
   constexpr double tolerance = 1e-6;
@@ -110,6 +129,72 @@ void check_duct_cells(const Case& c) {
                 "the duct is {:g} cells high; allowed: a whole number of cells, for example mpm.cell = {:g}",
                 cells, height / std::round(cells)));
   }
+}
+
+void check_l_box(const Case& c) {
+  const LBoxGeometry& box = c.scene().l_box();
+  if (!c.usable({"geometry.reservoir_height", "geometry.channel_height", "geometry.width", "geometry.rebars",
+                 "geometry.rebar_diameter", "geometry.rebar_distance", "geometry.channel_length",
+                 "mpm.cell"}))
+    return;
+  if (box.channel_height >= box.reservoir_height)
+    c.fault(
+        "geometry.channel_height",
+        fmt::format("geometry.channel_height is {:g} m, the reservoir {:g} m high; allowed: less than the "
+                    "reservoir's height",
+                    box.channel_height, box.reservoir_height));
+  if (box.rebars * box.rebar_diameter >= box.width)
+    c.fault("geometry.rebars",
+            fmt::format("{} bars of {:g} m fill the width of {:g} m; allowed: bars that leave gaps",
+                        box.rebars, box.rebar_diameter, box.width));
+  if (box.rebars > 0 && box.rebar_distance + 0.5 * box.rebar_diameter >= box.channel_length)
+    c.fault(
+        "geometry.rebar_distance",
+        fmt::format("the bars at {:g} m do not stand in the channel of {:g} m; allowed: a shorter distance",
+                    box.rebar_distance, box.channel_length));
+  check_cell(c, "mpm.cell", c.scene().mpm.cell, "channel", std::min(box.channel_height, 0.5 * box.width));
+}
+
+void check_v_funnel(const Case& c) {
+  const VFunnelGeometry& funnel = c.scene().v_funnel();
+  if (!c.usable({"geometry.top_width", "geometry.outlet_width", "geometry.depth", "mpm.cell"})) return;
+  if (funnel.outlet_width > funnel.top_width)
+    c.fault("geometry.outlet_width",
+            fmt::format(
+                "geometry.outlet_width is {:g} m, wider than the top ({:g} m); allowed: at most the top's "
+                "width",
+                funnel.outlet_width, funnel.top_width));
+  check_cell(c, "mpm.cell", c.scene().mpm.cell, "half of the outlet",
+             0.5 * std::min(funnel.outlet_width, funnel.depth));
+}
+
+void check_dam_break(const Case& c) {
+  const DamBreakGeometry& dam = c.scene().dam_break();
+  if (!c.usable({"geometry.column_length", "geometry.column_height", "geometry.tank_length", "mpm.cell"}))
+    return;
+  if (dam.column_length > dam.tank_length)
+    c.fault("geometry.column_length",
+            fmt::format(
+                "the column of {:g} m does not fit the tank of {:g} m; allowed: at most the tank's length",
+                dam.column_length, dam.tank_length));
+  check_cell(c, "mpm.cell", c.scene().mpm.cell, "column", std::min(dam.column_length, dam.column_height));
+}
+
+/// What OpenFOAM cannot do of a scene.
+void check_foam_can(const Case& c) {
+  if (!c.usable({"runs.foam"}) || c.scene().runs.foam.empty()) return;
+  if (c.scene().kind != Kind::slump && c.scene().kind != Kind::duct)
+    c.fault("runs.foam", fmt::format("runs.foam names a run, but OpenFOAM has no case of a {} yet; allowed: "
+                                     "runs.foam = [] for it",
+                                     to_string(c.scene().kind)));
+  if (c.scene().base.law == Wall::friction)
+    c.fault("runs.foam",
+            "runs.foam names a run, but OpenFOAM has no wall with friction yet; allowed: "
+            "runs.foam = [], or walls.base no-slip or slip");
+  if (c.scene().kind == Kind::slump && c.scene().slump().mould_lift_velocity)
+    c.fault("runs.foam",
+            "runs.foam names a run, but OpenFOAM has no mould that is lifted yet; allowed: "
+            "runs.foam = [], or no geometry.mould_lift_velocity");
 }
 
 void check_models(const Case& c) {
@@ -168,6 +253,16 @@ bool step_is_known(const Case& c) {
                    "geometry.cone_radius_top",
                    "geometry.cone_radius_bottom",
                    "geometry.height",
+                   "geometry.reservoir_length",
+                   "geometry.reservoir_height",
+                   "geometry.width",
+                   "geometry.top_width",
+                   "geometry.outlet_width",
+                   "geometry.depth",
+                   "geometry.taper_height",
+                   "geometry.neck_height",
+                   "geometry.column_length",
+                   "geometry.column_height",
                    "geometry.dimension",
                    "material.model",
                    "material.density",
@@ -295,15 +390,18 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
     check_cone_fits(c);
     check_slump_cells(c);
     check_foam_size(c);
-  } else {
-    check_duct_cells(c);
   }
+  if (draft.scene.kind == Kind::duct) check_duct_cells(c);
+  if (draft.scene.kind == Kind::l_box) check_l_box(c);
+  if (draft.scene.kind == Kind::v_funnel) check_v_funnel(c);
+  if (draft.scene.kind == Kind::dam_break) check_dam_break(c);
+  check_foam_can(c);
   check_models(c);
   check_foam_runs(c);
   check_thixotropy(c);
   check_outputs(c);
   if (!step_is_known(c)) return;
-  if (draft.scene.kind == Kind::slump) check_weight(c);
+  if (draft.scene.kind != Kind::duct) check_weight(c);
   check_size(c);
   if (draft.scene.mpm.allow_unstable_step) return;
   check_acoustic_step(c);

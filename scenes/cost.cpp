@@ -43,7 +43,7 @@ FoamEstimate estimate_foam(const Scene& scene) {
   FoamEstimate estimate;
   if (scene.kind == Kind::duct) {
     estimate.cells = std::round(scene.duct().height / cell);
-  } else {
+  } else if (scene.kind == Kind::slump) {
     const SlumpGeometry& shape = scene.slump();
     estimate.cells = std::ceil(shape.domain_radius / cell) * std::ceil(shape.domain_height / cell);
   }

@@ -49,6 +49,13 @@ Value to_value(const toml::node& node, const std::string& source, int depth = 0)
     std::vector<Value> items;
     for (const toml::node& item : *array) items.push_back(to_value(item, source, depth + 1));
     value.content = std::move(items);
+  } else if (const auto* table = node.as_table(); table && depth == 0) {
+    Foreign entries{foreign_name(node)};
+    for (auto&& [name, item] : *table) {
+      entries.names.emplace_back(name.str());
+      entries.values.push_back(to_value(item, source, depth + 1));
+    }
+    value.content = std::move(entries);
   } else {
     value.content = Foreign{foreign_name(node)};
   }
@@ -181,6 +188,9 @@ void relocate(Value& value, const Location& where) {
   value.where = where;
   if (auto* items = std::get_if<std::vector<Value>>(&value.content)) {
     for (Value& item : *items) relocate(item, where);
+  }
+  if (auto* entries = std::get_if<Foreign>(&value.content)) {
+    for (Value& item : entries->values) relocate(item, where);
   }
 }
 

@@ -130,11 +130,28 @@ Complaint read_particles(const Value& value, Draft& draft) {
   return {wrong, value.where};
 }
 
-std::string read_wall(const Value& value, Wall& wall) {
-  if (const auto* foreign = std::get_if<Foreign>(&value.content); foreign && foreign->what == "a table") {
-    return "is a table: walls with friction are not built yet; allowed: " + joined(all_names<Wall>());
+constexpr double largest_friction = 10.0;
+
+/// { friction = 0.3 }
+Complaint read_friction(const Foreign& table, const Location& where, WallContact& contact) {
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    if (table.names[i] == "friction") continue;
+    return {fmt::format("has an unknown entry {}; allowed: friction", quoted(table.names[i])),
+            table.values[i].where};
   }
-  return read_choice(value, wall);
+  if (table.values.empty()) return {"is an empty table; allowed: { friction = a number }", where};
+  const std::string wrong = read_number(table.values[0], from(0.0, largest_friction), contact.friction);
+  if (!wrong.empty()) return {"has a friction that " + wrong, table.values[0].where};
+  contact.law = Wall::friction;
+  return {};
+}
+
+Complaint read_wall(const Value& value, WallContact& contact) {
+  const auto* table = std::get_if<Foreign>(&value.content);
+  if (table && table->what == "a table") return read_friction(*table, value.where, contact);
+  contact.friction = 0.0;
+  const std::string wrong = read_choice(value, contact.law);
+  return {wrong.empty() ? "" : wrong + ", { friction = a number }", value.where};
 }
 
 template <class Integer>
@@ -258,11 +275,32 @@ Key particles(std::string path, std::string meaning) {
   return key;
 }
 
-Key wall(std::string path, Access<Wall> at, std::string meaning) {
-  Key key = choice(std::move(path), at, std::move(meaning));
-  key.read = [=](const Value& value, Draft& draft) {
-    return Complaint{read_wall(value, at(draft)), value.where};
-  };
+namespace {
+
+Key any_wall(std::string path, std::string meaning) {
+  return plain_key(std::move(path), "", std::move(meaning),
+                   fmt::format("one of {}, or {{ friction = number, {} }}", joined(all_names<Wall>()),
+                               from(0.0, largest_friction).text()));
+}
+
+Json written(const WallContact& contact) {
+  if (contact.law == Wall::friction) return Json{{"friction", contact.friction}};
+  return to_string(contact.law);
+}
+
+}  // namespace
+
+Key wall(std::string path, Access<WallContact> at, std::string meaning) {
+  Key key = any_wall(std::move(path), std::move(meaning));
+  key.read = [=](const Value& value, Draft& draft) { return read_wall(value, at(draft)); };
+  key.write = [=](Draft& draft) { return written(at(draft)); };
+  return key;
+}
+
+Key wall(std::string path, Access<std::optional<WallContact>> at, std::string meaning) {
+  Key key = any_wall(std::move(path), std::move(meaning));
+  key.read = [=](const Value& value, Draft& draft) { return read_wall(value, at(draft).emplace()); };
+  key.write = [=](Draft& draft) { return at(draft) ? written(*at(draft)) : Json(); };
   return key;
 }
 

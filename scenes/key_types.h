@@ -40,7 +40,9 @@ Key steps(std::string path, std::string unit, Access<std::vector<std::pair<doubl
 /// Particles in a cell: a number, or one for each axis.
 Key particles(std::string path, std::string meaning);
 /// How a wall holds the material.
-Key wall(std::string path, Access<Wall>, std::string meaning);
+Key wall(std::string path, Access<WallContact>, std::string meaning);
+/// A wall that may be left to another's law.
+Key wall(std::string path, Access<std::optional<WallContact>>, std::string meaning);
 
 /// A key without a type.
 Key plain_key(std::string path, std::string unit, std::string meaning, std::string takes);

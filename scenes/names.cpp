@@ -5,13 +5,18 @@
 namespace flowrest::scenes {
 
 const NameTable<Kind>& names_of(Kind) {
-  static const NameTable<Kind> table = {{Kind::slump, "slump"}, {Kind::duct, "duct"}};
+  static const NameTable<Kind> table = {{Kind::slump, "slump"},
+                                        {Kind::duct, "duct"},
+                                        {Kind::l_box, "l-box"},
+                                        {Kind::v_funnel, "v-funnel"},
+                                        {Kind::dam_break, "dam-break"}};
   return table;
 }
 
 const NameTable<Dimension>& names_of(Dimension) {
   static const NameTable<Dimension> table = {{Dimension::axisymmetric, "axisymmetric"},
                                              {Dimension::plane, "plane"},
+                                             {Dimension::half, "half"},
                                              {Dimension::quarter, "quarter"},
                                              {Dimension::full, "full"}};
   return table;

@@ -139,7 +139,7 @@ void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) 
   const Kind kind = draft.scene.kind;
   const auto value = given.values.find(key.path());
   const bool is_given = value != given.values.end();
-  const bool suits = !key.only_kind || *key.only_kind == kind;
+  const bool suits = key.suits(kind);
   Complaint wrong{"", given.place_of(key.path())};
   if (is_given && !suits) {
     wrong.what = misplaced(key, kind);
@@ -156,12 +156,11 @@ void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) 
 
 /// Sets what differs between kinds before anything is read, and makes room for what only some scenes have.
 void prepare(const Given& given, Draft& draft) {
-  if (draft.scene.kind == Kind::slump) {
-    draft.scene.forces.gravity = standard_gravity;
-  } else {
-    draft.scene.geometry = {Dimension::plane, DuctGeometry{}};
-    draft.scene.time.stop_at_rest = false;  // it starts from rest
-  }
+  const Kind kind = draft.scene.kind;
+  draft.take_shape_of(kind);
+  if (kind != Kind::duct) draft.scene.forces.gravity = standard_gravity;
+  // A duct starts from rest, a funnel is to run empty, and water does not stop.
+  draft.scene.time.stop_at_rest = kind == Kind::slump || kind == Kind::l_box;
   if (given.sections.contains("thixotropy")) draft.scene.thixotropy.emplace();
 }
 
@@ -173,7 +172,8 @@ Scene build(const Given& given, Faults& faults) {
   prepare(given, draft);
   for (const Key& key : keys()) {
     // Without a kind, what depends on it can be neither expected nor refused.
-    if (key.path() != "kind" && (kind_is_known || !key.only_kind)) read_key(key, given, draft, faults);
+    if (key.path() != "kind" && (kind_is_known || key.only_kinds.empty()))
+      read_key(key, given, draft, faults);
   }
   if (kind_is_known) {
     resolve(given, draft, faults);

@@ -10,6 +10,11 @@ using Json = nlohmann::ordered_json;
 std::string toml_value(const Json& value) {
   if (value.is_string()) return toml_string(value.get<std::string>());
   if (value.is_number_float()) return exact_text(value.get<double>());
+  if (value.is_object()) {
+    std::vector<std::string> entries;
+    for (const auto& [name, item] : value.items()) entries.push_back(name + " = " + toml_value(item));
+    return fmt::format("{{ {} }}", joined(entries));
+  }
   if (!value.is_array()) return value.dump();
   std::vector<std::string> items;
   for (const Json& item : value) items.push_back(toml_value(item));
@@ -21,7 +26,7 @@ std::vector<Setting> settings_of(const Scene& scene) {
   draft.scene = scene;
   std::vector<Setting> settings;
   for (const Key& key : keys()) {
-    if (key.only_kind && *key.only_kind != scene.kind) continue;
+    if (!key.suits(scene.kind)) continue;
     if (key.section == "thixotropy" && !scene.thixotropy) continue;
     Json value = key.write(draft);
     if (!value.is_null()) settings.push_back({&key, std::move(value)});

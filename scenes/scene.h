@@ -13,15 +13,17 @@
 /// The scene: what is simulated, read from TOML, checked and resolved once for every solver, in SI units.
 namespace flowrest::scenes {
 
-enum class Kind { slump, duct };
-enum class Dimension { axisymmetric, plane, quarter, full };
+enum class Kind { slump, duct, l_box, v_funnel, dam_break };
+/// What is computed of a body: `half` and `quarter` are cut along its planes of symmetry.
+enum class Dimension { axisymmetric, plane, half, quarter, full };
 enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
 enum class Seeding { lattice, jittered };
 /// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
-enum class Wall { no_slip, slip };
+/// How a wall holds the material; only `no_slip` and `slip` are names, friction is given by its coefficient.
+enum class Wall { no_slip, slip, friction };
 /// Whose laws an OpenFOAM run takes: flowrest's rheology plug-in, OpenFOAM's own, or the former where it is
 /// built.
 enum class FoamLaws { best, plug_in, built_in };
@@ -53,6 +55,8 @@ struct SlumpGeometry {
   double cone_radius_bottom = 0.0;  ///< m
   double domain_radius = 0.0;       ///< m, bounds the OpenFOAM mesh; material that reaches it ends a run
   double domain_height = 0.0;       ///< m
+  /// m/s, at which the mould is lifted; without one the cone is released at once.
+  std::optional<double> mould_lift_velocity;
   /// Volume of the cone (a frustum), m3.
   double volume() const;
   bool operator==(const SlumpGeometry&) const = default;
@@ -64,9 +68,48 @@ struct DuctGeometry {
   bool operator==(const DuctGeometry&) const = default;
 };
 
+/// EN 12350-10: a reservoir whose gate opens on a channel behind upright bars (Yu et al. 2026, Fig. 18). x
+/// runs along the channel from the reservoir's back wall.
+struct LBoxGeometry {
+  double reservoir_length = 0.1;  ///< m, along the channel
+  double reservoir_height = 0.6;  ///< m, filled to the brim
+  double width = 0.2;             ///< m, across
+  double channel_length = 0.6;    ///< m, from the reservoir to the end wall
+  double channel_height = 0.15;   ///< m, of the opening under the reservoir's front wall
+  int rebars = 3;                 ///< upright, evenly across the width
+  double rebar_diameter = 0.012;  ///< m
+  double rebar_distance = 0.006;  ///< m, of the bars' axes from the reservoir
+  double length() const { return reservoir_length + channel_length; }
+  bool operator==(const LBoxGeometry&) const = default;
+};
+
+/// EN 12350-9: a funnel between two upright plates, over an outlet that opens at once (Yu et al. 2026, Fig.
+/// 24). x runs across its slopes, heights from the outlet.
+struct VFunnelGeometry {
+  double top_width = 0.515;     ///< m
+  double outlet_width = 0.065;  ///< m
+  double depth = 0.075;         ///< m, between the plates
+  double taper_height = 0.45;   ///< m
+  double neck_height = 0.15;    ///< m
+  double fall_height = 0.25;    ///< m, from the outlet to the floor that catches the material
+  double height() const { return taper_height + neck_height; }
+  double width_at(double height) const;  ///< m, between the slopes
+  double volume() const;                 ///< m3
+  bool operator==(const VFunnelGeometry&) const = default;
+};
+
+/// A column of fluid in the corner of a tank, held by nothing from the start.
+struct DamBreakGeometry {
+  double column_length = 0.6;  ///< m
+  double column_height = 0.6;  ///< m
+  double width = 0.15;         ///< m, of column and tank; of no consequence in a plane
+  double tank_length = 1.61;   ///< m
+  bool operator==(const DamBreakGeometry&) const = default;
+};
+
 struct Geometry {
   Dimension dimension = Dimension::axisymmetric;
-  std::variant<SlumpGeometry, DuctGeometry> shape;
+  std::variant<SlumpGeometry, DuctGeometry, LBoxGeometry, VFunnelGeometry, DamBreakGeometry> shape;
   bool operator==(const Geometry&) const = default;
 };
 
@@ -94,6 +137,13 @@ struct Thixotropy {
   double deflocculation_coefficient = 0.0;  ///< alpha
   double initial_flocculation = 0.0;        ///< lambda0
   bool operator==(const Thixotropy&) const = default;
+};
+
+/// What a wall does to the material that touches it.
+struct WallContact {
+  Wall law = Wall::no_slip;
+  double friction = 0.0;  ///< Coulomb's coefficient, of Wall::friction
+  bool operator==(const WallContact&) const = default;
 };
 
 struct Forces {
@@ -175,7 +225,8 @@ struct Scene {
   Geometry geometry;
   Material material;
   std::optional<Thixotropy> thixotropy;
-  Wall base = Wall::no_slip;
+  WallContact base;                  ///< of the plate, the plates or the whole container
+  std::optional<WallContact> mould;  ///< as `base` where it is not given
   Forces forces;
   Time time;
   Output output;
@@ -184,7 +235,12 @@ struct Scene {
 
   const SlumpGeometry& slump() const { return std::get<SlumpGeometry>(geometry.shape); }
   const DuctGeometry& duct() const { return std::get<DuctGeometry>(geometry.shape); }
-  /// Spatial dimension of the computation: 2 for axisymmetric and plane, 3 for quarter and full.
+  const LBoxGeometry& l_box() const { return std::get<LBoxGeometry>(geometry.shape); }
+  const VFunnelGeometry& v_funnel() const { return std::get<VFunnelGeometry>(geometry.shape); }
+  const DamBreakGeometry& dam_break() const { return std::get<DamBreakGeometry>(geometry.shape); }
+  /// Height of the material at the start, m.
+  double body_height() const;
+  /// Spatial dimension of the computation: 2 for axisymmetric and plane, 3 for the others.
   int spatial_dimension() const {
     return geometry.dimension == Dimension::axisymmetric || geometry.dimension == Dimension::plane ? 2 : 3;
   }

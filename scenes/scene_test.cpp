@@ -24,6 +24,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.material, b.material);
   EXPECT_EQ(a.thixotropy, b.thixotropy);
   EXPECT_EQ(a.base, b.base);
+  EXPECT_EQ(a.mould, b.mould);
   EXPECT_EQ(a.forces, b.forces);
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.output, b.output);
@@ -159,9 +160,31 @@ TEST(Scene, ResolvedSettingsReadBackAsTheSameScene) {
       {"title=\"a \\\"quoted\\\" \\\\ title\\twith a tab\"", "mpm.allow_unstable_step=true",
        "mpm.time_step=1", "foam.max_time_step=1e-3", "foam.cell=0.007", "mpm.fluid_update=explicit",
        "mpm.seeding=jittered"},
+      {"walls.base={ friction = 0.3 }", "walls.mould={ friction = 0.123456789012345678 }", "runs.foam=[]",
+       "geometry.mould_lift_velocity=0.15"},
+      {"walls.base={ friction = 0 }", "walls.mould=slip", "runs.foam=[]"},
   };
   for (const auto& set : variants) expect_round_trip(parse_scene(slump_text, "slump.toml", {set, {}}));
   expect_round_trip(parse_scene(duct_text, "duct.toml"));
+}
+
+TEST(Scene, EverySceneOfTheFolderCanBeUsedAndReadsBack) {
+  const auto scenes = list_scenes();
+  EXPECT_GE(scenes.size(), 30u);
+  for (const SceneSummary& summary : scenes) {
+    EXPECT_EQ(summary.error, "") << summary.name;
+    if (summary.error.empty()) expect_round_trip(load_scene(summary.name));
+  }
+}
+
+TEST(Scene, AVariantGivesOnlyWhatDiffers) {
+  const Scene fresh = load_scene("mix-a-slump-sf0"), rested = load_scene("mix-a-slump-sf600");
+  EXPECT_EQ(rested.thixotropy->initial_flocculation, 2.8);
+  EXPECT_EQ(rested.material, fresh.material);
+  EXPECT_EQ(rested.geometry, fresh.geometry);
+  EXPECT_EQ(rested.base, fresh.base);
+  EXPECT_EQ(fresh.base.law, Wall::friction);
+  EXPECT_EQ(fresh.base.friction, 0.3);
 }
 
 TEST(Scene, ResolvedJsonHasTheSameKeys) {

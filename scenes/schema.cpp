@@ -32,33 +32,86 @@ std::vector<Key> general_keys() {
 std::vector<Key> geometry_keys() {
   return {
       choice("geometry.dimension", AT(draft.scene.geometry.dimension),
-             "what is computed of the body: any of a slump (plane: a column of the cone's section), plane of "
-             "a duct")
-          .otherwise("axisymmetric (slump), plane (duct)"),
+             "what is computed of the body: axisymmetric, plane (a column of the cone's section), quarter or "
+             "full of a slump; plane of a duct; plane, half or full of an l-box; plane, quarter or full of a "
+             "v-funnel; plane or full of a dam-break")
+          .otherwise("axisymmetric (slump), half (l-box), quarter (v-funnel), plane (duct, dam-break)"),
       number("geometry.cone_height", "m", above(0.0, largest_length), AT(draft.slump().cone_height),
              "height of the cone of material")
           .needed()
-          .only_in(Kind::slump),
+          .only_in({Kind::slump}),
       number("geometry.cone_radius_top", "m", from(0.0, largest_length), AT(draft.slump().cone_radius_top),
              "radius of the cone at its top")
           .needed()
-          .only_in(Kind::slump),
+          .only_in({Kind::slump}),
       number("geometry.cone_radius_bottom", "m", above(0.0, largest_length),
              AT(draft.slump().cone_radius_bottom), "radius of the cone at the plate")
           .needed()
-          .only_in(Kind::slump),
+          .only_in({Kind::slump}),
       number("geometry.domain_radius", "m", above(0.0, largest_length), AT(draft.slump().domain_radius),
              "radius of the OpenFOAM mesh; material that reaches it ends a run")
           .needed()
-          .only_in(Kind::slump),
+          .only_in({Kind::slump}),
       number("geometry.domain_height", "m", above(0.0, largest_length), AT(draft.slump().domain_height),
              "height of the OpenFOAM mesh; material that reaches it ends a run")
           .needed()
-          .only_in(Kind::slump),
+          .only_in({Kind::slump}),
       number("geometry.height", "m", above(0.0, largest_length), AT(draft.duct().height),
              "distance between the plates, a whole number of cells")
           .needed()
-          .only_in(Kind::duct),
+          .only_in({Kind::duct}),
+      number("geometry.mould_lift_velocity", "m/s", above(0.0, 1e3), AT(draft.slump().mould_lift_velocity),
+             "speed at which the mould is lifted off the cone")
+          .otherwise("the cone is released at once")
+          .only_in({Kind::slump}),
+  };
+}
+
+std::vector<Key> l_box_keys() {
+  const auto size = [](const char* name, Access<double> at, const char* meaning) {
+    return number(std::string("geometry.") + name, "m", above(0.0, largest_length), at, meaning)
+        .only_in({Kind::l_box});
+  };
+  return {
+      size("reservoir_length", AT(draft.l_box().reservoir_length),
+           "length of the reservoir along the channel"),
+      size("reservoir_height", AT(draft.l_box().reservoir_height),
+           "height of the reservoir, filled to the brim"),
+      number(
+          "geometry.width", "m", above(0.0, largest_length),
+          +[](Draft& draft) -> double& {
+            return draft.scene.kind == Kind::l_box ? draft.l_box().width : draft.dam_break().width;
+          },
+          "width across the flow")
+          .only_in({Kind::l_box, Kind::dam_break}),
+      size("channel_length", AT(draft.l_box().channel_length), "length of the channel behind the reservoir"),
+      size("channel_height", AT(draft.l_box().channel_height),
+           "height of the opening to the channel, and of the bars"),
+      integer("geometry.rebars", 0, 100, AT(draft.l_box().rebars), "upright bars, evenly across the width")
+          .only_in({Kind::l_box}),
+      size("rebar_diameter", AT(draft.l_box().rebar_diameter), "diameter of the bars"),
+      size("rebar_distance", AT(draft.l_box().rebar_distance),
+           "distance of the bars' axes from the reservoir"),
+  };
+}
+
+std::vector<Key> v_funnel_and_dam_break_keys() {
+  const auto size = [](const char* name, Access<double> at, const char* meaning, Kind kind) {
+    return number(std::string("geometry.") + name, "m", above(0.0, largest_length), at, meaning)
+        .only_in({kind});
+  };
+  return {
+      size("top_width", AT(draft.v_funnel().top_width), "width at the top", Kind::v_funnel),
+      size("outlet_width", AT(draft.v_funnel().outlet_width), "width of the outlet", Kind::v_funnel),
+      size("depth", AT(draft.v_funnel().depth), "distance between the plates", Kind::v_funnel),
+      size("taper_height", AT(draft.v_funnel().taper_height), "height of the sloping part", Kind::v_funnel),
+      size("neck_height", AT(draft.v_funnel().neck_height), "height of the neck over the outlet",
+           Kind::v_funnel),
+      size("fall_height", AT(draft.v_funnel().fall_height), "height of the outlet over the floor",
+           Kind::v_funnel),
+      size("column_length", AT(draft.dam_break().column_length), "length of the column", Kind::dam_break),
+      size("column_height", AT(draft.dam_break().column_height), "height of the column", Kind::dam_break),
+      size("tank_length", AT(draft.dam_break().tank_length), "length of the tank", Kind::dam_break),
   };
 }
 
@@ -117,14 +170,18 @@ std::vector<Key> thixotropy_keys() {
 
 std::vector<Key> wall_and_force_keys() {
   return {
-      wall("walls.base", AT(draft.scene.base), "how the plate or plates hold the material"),
+      wall("walls.base", AT(draft.scene.base),
+           "how the plate, the plates of a duct or the whole container hold the material"),
+      wall("walls.mould", AT(draft.scene.mould), "how the mould of a slump holds the material")
+          .otherwise("as walls.base")
+          .only_in({Kind::slump}),
       number("forces.gravity", "m/s2", from(0.0, 1e5), AT(draft.scene.forces.gravity), "gravity, downwards")
           .otherwise("9.81")
-          .only_in(Kind::slump),
+          .only_in({Kind::slump, Kind::l_box, Kind::v_funnel, Kind::dam_break}),
       steps("forces.body_force", "N/m3", AT(draft.scene.forces.body_force),
             "force along the duct: a constant, or pairs of the time from which it holds (s) and its value")
           .needed()
-          .only_in(Kind::duct),
+          .only_in({Kind::duct}),
   };
 }
 
@@ -135,7 +192,7 @@ std::vector<Key> time_keys() {
           .needed(),
       boolean("time.stop_at_rest", AT(draft.scene.time.stop_at_rest),
               "whether an elasto-viscoplastic run ends as soon as it is at rest (a fluid never is)")
-          .otherwise("true (slump), false (duct)"),
+          .otherwise("true (slump, l-box), false (duct, v-funnel, dam-break)"),
       number("time.rest_bound", "", above(0.0, 1.0), AT(draft.scene.time.rest_bound),
              "at rest: where the relative growth of the spread still to come is bounded by this"),
   };
@@ -226,14 +283,34 @@ std::vector<Key> foam_keys() {
 
 std::vector<Key> every_key() {
   std::vector<Key> all;
-  for (auto group : {general_keys, geometry_keys, material_keys, thixotropy_keys, wall_and_force_keys,
-                     time_keys, output_keys, mpm_keys, foam_keys}) {
+  for (auto group : {general_keys, geometry_keys, l_box_keys, v_funnel_and_dam_break_keys, material_keys,
+                     thixotropy_keys, wall_and_force_keys, time_keys, output_keys, mpm_keys, foam_keys}) {
     for (Key& key : group()) all.push_back(std::move(key));
   }
   return all;
 }
 
 }  // namespace
+
+void Draft::take_shape_of(Kind kind) {
+  switch (kind) {
+    case Kind::slump:
+      scene.geometry = {Dimension::axisymmetric, SlumpGeometry{}};
+      break;
+    case Kind::duct:
+      scene.geometry = {Dimension::plane, DuctGeometry{}};
+      break;
+    case Kind::l_box:
+      scene.geometry = {Dimension::half, LBoxGeometry{}};
+      break;
+    case Kind::v_funnel:
+      scene.geometry = {Dimension::quarter, VFunnelGeometry{}};
+      break;
+    case Kind::dam_break:
+      scene.geometry = {Dimension::plane, DamBreakGeometry{}};
+      break;
+  }
+}
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
@@ -267,8 +344,7 @@ const Key* find_key(const std::string& path) {
 std::vector<std::string> key_names(const std::string& section, std::optional<Kind> kind) {
   std::vector<std::string> names;
   for (const Key& key : keys()) {
-    const bool suits = !kind || !key.only_kind || key.only_kind == kind;
-    if (key.section == section && suits) names.push_back(key.name);
+    if (key.section == section && (!kind || key.suits(*kind))) names.push_back(key.name);
   }
   return names;
 }

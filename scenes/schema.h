@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -24,6 +25,11 @@ struct Draft {
   std::set<std::string> unusable;  ///< keys that are missing or at fault: nothing may be concluded from them
 
   SlumpGeometry& slump() { return std::get<SlumpGeometry>(scene.geometry.shape); }
+  LBoxGeometry& l_box() { return std::get<LBoxGeometry>(scene.geometry.shape); }
+  VFunnelGeometry& v_funnel() { return std::get<VFunnelGeometry>(scene.geometry.shape); }
+  DamBreakGeometry& dam_break() { return std::get<DamBreakGeometry>(scene.geometry.shape); }
+  /// Gives the scene the shape of a kind, with its standard sizes.
+  void take_shape_of(Kind);
   DuctGeometry& duct() { return std::get<DuctGeometry>(scene.geometry.shape); }
 };
 
@@ -33,9 +39,9 @@ struct Key {
   std::string name{};
   std::string unit{};
   std::string meaning{};
-  std::string takes{};              ///< type and range in words
-  std::optional<Kind> only_kind{};  ///< the one kind of scene that has this key
-  bool required = false;   ///< by every scene of its kind (of [thixotropy]: where the table is given)
+  std::string takes{};             ///< type and range in words
+  std::vector<Kind> only_kinds{};  ///< the kinds of scene that have this key; empty: all
+  bool required = false;           ///< by every scene of its kind (of [thixotropy]: where the table is given)
   std::string fallback{};  ///< what holds where it is not given, where that is not the constant default
   std::string rival{};     ///< the key whose place this one takes
   /// Stores the value, or says what is wrong with it.
@@ -46,7 +52,10 @@ struct Key {
   std::string path() const { return section.empty() ? name : section + "." + name; }
 
   Key&& needed() && { return required = true, std::move(*this); }
-  Key&& only_in(Kind kind) && { return only_kind = kind, std::move(*this); }
+  Key&& only_in(std::vector<Kind> kinds) && { return only_kinds = std::move(kinds), std::move(*this); }
+  bool suits(Kind kind) const {
+    return only_kinds.empty() || std::find(only_kinds.begin(), only_kinds.end(), kind) != only_kinds.end();
+  }
   Key&& otherwise(std::string text) && { return fallback = std::move(text), std::move(*this); }
   Key&& replaces(std::string path_of_rival) && { return rival = std::move(path_of_rival), std::move(*this); }
 };

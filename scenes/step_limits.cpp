@@ -60,7 +60,7 @@ double StepLimits::largest() const { return std::min(largest_cfl * acoustic, vis
 
 double pressure_at_rest(const Scene& scene) {
   if (scene.kind == Kind::duct) return 0.0;
-  return scene.material.density * scene.forces.gravity * scene.slump().cone_height;
+  return scene.material.density * scene.forces.gravity * scene.body_height();
 }
 
 double volume_under_weight(const Scene& scene) {
@@ -89,12 +89,33 @@ constexpr double duct_columns = 4.0;
 double occupied_cells(const Scene& scene) {
   const double cell = scene.mpm.cell;
   if (scene.kind == Kind::duct) return duct_columns * scene.duct().height / cell;
+  const bool plane = scene.geometry.dimension == Dimension::plane;
+  const double share = scene.geometry.dimension == Dimension::half      ? 0.5
+                       : scene.geometry.dimension == Dimension::quarter ? 0.25
+                                                                        : 1.0;
+  const double cells_in_space = share / (cell * cell * cell);
+  if (scene.kind == Kind::l_box) {
+    const LBoxGeometry& box = scene.l_box();
+    const double section = box.reservoir_length * box.reservoir_height;
+    return plane ? section / (cell * cell) : section * box.width * cells_in_space;
+  }
+  if (scene.kind == Kind::v_funnel) {
+    const VFunnelGeometry& funnel = scene.v_funnel();
+    return plane ? 0.5 * funnel.volume() / funnel.depth / (cell * cell) : funnel.volume() * cells_in_space;
+  }
+  if (scene.kind == Kind::dam_break) {
+    const DamBreakGeometry& dam = scene.dam_break();
+    const double section = dam.column_length * dam.column_height;
+    return plane ? section / (cell * cell) : section * dam.width * cells_in_space;
+  }
   const SlumpGeometry& cone = scene.slump();
   const double half_section = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
   switch (scene.geometry.dimension) {
     case Dimension::axisymmetric:
     case Dimension::plane:  // by symmetry, half of the section
       return half_section / (cell * cell);
+    case Dimension::half:
+      return 0.5 * cone.volume() / (cell * cell * cell);
     case Dimension::quarter:
       return 0.25 * cone.volume() / (cell * cell * cell);
     case Dimension::full:

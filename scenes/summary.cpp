@@ -9,6 +9,7 @@
 #include "scenes/cost.h"
 #include "scenes/settings.h"
 #include "scenes/step_limits.h"
+#include "scenes/text.h"
 
 namespace flowrest::scenes {
 
@@ -26,13 +27,18 @@ std::string default_text(const Key& key, const Json& of_empty_scene) {
 Draft empty_draft(const Key& key) {
   Draft draft;
   draft.scene.thixotropy.emplace();
-  if (key.only_kind == Kind::duct) draft.scene.geometry.shape = DuctGeometry{};
+  if (!key.only_kinds.empty()) {
+    draft.scene.kind = key.only_kinds.front();
+    draft.take_shape_of(draft.scene.kind);
+  }
   return draft;
 }
 
 std::string reference_row(const Key& key) {
   Draft draft = empty_draft(key);
-  const std::string kind = key.only_kind ? fmt::format(" ({} only)", to_string(*key.only_kind)) : "";
+  std::vector<std::string> kinds;
+  for (const Kind kind : key.only_kinds) kinds.push_back(to_string(kind));
+  const std::string kind = kinds.empty() ? "" : fmt::format(" ({} only)", joined(kinds));
   return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name, key.takes, key.unit,
                      default_text(key, key.write(draft)), key.meaning, kind);
 }
@@ -58,6 +64,7 @@ namespace {
 std::string readable(const Json& value) {
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_object()) return toml_value(value);
   if (!value.is_array()) return value.dump();
   std::string text;
   for (const Json& item : value) {

@@ -18,9 +18,13 @@ struct Location {
   std::string text() const;
 };
 
-/// A TOML value that no key of a scene takes ("a table", "a date").
+struct Value;
+
+/// A TOML value that few keys of a scene take ("a table") or none ("a date").
 struct Foreign {
   std::string what;
+  std::vector<std::string> names{};  ///< of a table's entries, in their order
+  std::vector<Value> values{};
 };
 
 /// A value as given, with its place.

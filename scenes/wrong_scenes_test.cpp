@@ -12,6 +12,26 @@ const std::string thixotropic_text =
              "[thixotropy]\nflocculation_rate = 0.4\n"
              "deflocculation_coefficient = 0.1\ninitial_flocculation = 0\n[walls]");
 
+/// A container with no more than it needs.
+std::string container_text(const std::string& kind) {
+  return "title = \"A container\"\nkind = \"" + kind + R"("
+[material]
+model = "newtonian"
+density = 1000
+plastic_viscosity = 1
+bulk_modulus = 1e6
+poisson_ratio = 0.45
+[time]
+end = 1
+[mpm]
+
+cell = 0.01
+)";
+}
+const std::string l_box_text = container_text("l-box");
+const std::string v_funnel_text = container_text("v-funnel");
+const std::string dam_text = container_text("dam-break");
+
 /// Text, what is replaced in it, and the message (or its beginning, where it is long).
 struct Wrong {
   const char* name;
@@ -106,7 +126,7 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:33:10: mpm.scheme is \"cubic\"; allowed: quadratic-apic, linear-flip, paper"},
     {"UnknownDimension", slump_text, "\"axisymmetric\"", "\"axisymetric\"",
      "wrong.toml:5:13: geometry.dimension is \"axisymetric\", nearest is \"axisymmetric\"; allowed: "
-     "axisymmetric, plane, quarter, full"},
+     "axisymmetric, plane, half, quarter, full"},
     {"UnknownPrecision", slump_text, "cfl = 0.75", "precision = \"single\"",
      "wrong.toml:36:13: mpm.precision is \"single\"; allowed: double, float"},
     {"UnknownRun", slump_text, "foam = [\"papanastasiou\"]", "foam = [\"papanastasio\"]",
@@ -115,13 +135,56 @@ const Wrong wrong_scenes[] = {
     {"RunNamedTwice", slump_text, "mpm = [\"elasto-viscoplastic\"]", "mpm = [\"newtonian\", \"newtonian\"]",
      "wrong.toml:3:30: runs.mpm names newtonian twice; allowed: each model once"},
     {"UnknownWall", slump_text, "base = \"no-slip\"", "base = \"sticky\"",
-     "wrong.toml:20:8: walls.base is \"sticky\"; allowed: no-slip, slip"},
-    {"FrictionIsNotBuilt", slump_text, "base = \"no-slip\"", "base = { friction = 0.3 }",
-     "wrong.toml:20:8: walls.base is a table: walls with friction are not built yet; allowed: no-slip, slip"},
+     "wrong.toml:20:8: walls.base is \"sticky\"; allowed: no-slip, slip, { friction = a number }"},
+    {"FrictionIsNegative", slump_text, "base = \"no-slip\"", "base = { friction = -0.3 }",
+     "wrong.toml:20:21: walls.base has a friction that is -0.3; allowed: at least 0, at most 10"},
+    {"FrictionIsNoNumber", slump_text, "base = \"no-slip\"", "base = { friction = \"much\" }",
+     "wrong.toml:20:21: walls.base has a friction that must be a number, not a string"},
+    {"FrictionMisspelt", slump_text, "base = \"no-slip\"", "base = { fricton = 0.3 }",
+     "wrong.toml:20:20: walls.base has an unknown entry \"fricton\"; allowed: friction"},
+    {"FrictionInOpenFoam", slump_text, "base = \"no-slip\"", "base = { friction = 0.3 }",
+     "wrong.toml:3:48: runs.foam names a run, but OpenFOAM has no wall with friction yet; allowed: runs.foam "
+     "= [], "
+     "or walls.base no-slip or slip"},
+    {"MouldInOpenFoam", slump_text, "domain_height = 0.35",
+     "domain_height = 0.35\nmould_lift_velocity = 0.15",
+     "wrong.toml:3:48: runs.foam names a run, but OpenFOAM has no mould that is lifted yet; allowed: "
+     "runs.foam = []"},
+    {"MouldThatStandsStill", slump_text, "domain_height = 0.35",
+     "domain_height = 0.35\nmould_lift_velocity = 0.0",
+     "wrong.toml:11:23: geometry.mould_lift_velocity is 0; allowed: greater than 0, at most 1000"},
+    {"FrictionInADuct", duct_text, "[forces]", "[walls]\nbase = { friction = 0.3 }\n[forces]",
+     "wrong.toml:12:8: walls.base has friction, which does not suit a duct; allowed: no-slip, slip"},
+    {"AxisymmetricLBox", l_box_text, "kind = \"l-box\"",
+     "kind = \"l-box\"\ngeometry = { dimension = \"axisymmetric\" }",
+     "wrong.toml:3:26: geometry.dimension is axisymmetric, which does not suit a l-box; allowed: plane, "
+     "half, full"},
+    {"LBoxFullOfBars", l_box_text, "kind = \"l-box\"", "kind = \"l-box\"\ngeometry = { rebars = 20 }",
+     "wrong.toml:3:23: 20 bars of 0.012 m fill the width of 0.2 m; allowed: bars that leave gaps"},
+    {"LBoxWithoutAFrontWall", l_box_text, "kind = \"l-box\"",
+     "kind = \"l-box\"\ngeometry = { channel_height = 0.7 }",
+     "wrong.toml:3:31: geometry.channel_height is 0.7 m, the reservoir 0.6 m high; allowed: less than the "
+     "reservoir's "
+     "height"},
+    {"LBoxCellsWiderThanTheChannel", l_box_text, "cell = 0.01", "cell = 0.12",
+     "wrong.toml:13:8: mpm.cell is 0.12 m, larger than the channel (0.1 m); allowed: at most 0.1"},
+    {"FunnelThatWidensDownwards", v_funnel_text, "[time]", "[geometry]\noutlet_width = 0.6\n[time]",
+     "wrong.toml:10:16: geometry.outlet_width is 0.6 m, wider than the top (0.515 m); allowed: at most the "
+     "top's width"},
+    {"FunnelInOpenFoam", v_funnel_text, "[time]", "[runs]\nfoam = [\"newtonian\"]\n[time]",
+     "wrong.toml:10:8: runs.foam names a run, but OpenFOAM has no case of a v-funnel yet; allowed: runs.foam "
+     "= [] "
+     "for it"},
+    {"ColumnLongerThanItsTank", dam_text, "[time]", "[geometry]\ncolumn_length = 2.0\n[time]",
+     "wrong.toml:10:17: the column of 2 m does not fit the tank of 1.61 m; allowed: at most the tank's "
+     "length"},
+    {"FrictionLeftOut", slump_text, "base = \"no-slip\"", "base = {}",
+     "wrong.toml:20:8: walls.base is an empty table; allowed: { friction = a number }"},
     {"NoTitle", slump_text, "title = \"A slump\"\n", "\n",
      "wrong.toml:1:1: title is missing; needed: what every report calls the scene (string, 1 to 200 bytes)"},
     {"NoKind", slump_text, "kind = \"slump\"\n", "\n",
-     "wrong.toml:1:1: kind is missing; needed: what is simulated (one of slump, duct)"},
+     "wrong.toml:1:1: kind is missing; needed: what is simulated (one of slump, duct, l-box, v-funnel, "
+     "dam-break)"},
     {"NoDensity", slump_text, "density = 2300.0\n", "\n",
      "wrong.toml:11:2: material.density is missing; needed: density at rest and without pressure (number, "
      "greater than 0, at most 1e+06, in kg/m3)"},

@@ -23,7 +23,7 @@ constexpr double twin_is_coarser = 1.6;
 
 /// The size of a scene's body, m.
 double length_of(const scenes::Scene& scene) {
-  return scene.kind == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.duct().height;
+  return scene.kind == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.body_height();
 }
 
 std::string percent(double fraction) { return compare::words::percent(fraction); }

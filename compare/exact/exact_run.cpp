@@ -63,7 +63,8 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
   const Bingham material = material_of(scene);
   const auto& cone = scene.slump();
   if (scene.thixotropy) refuse(scene, "a thixotropic yield stress changes with the flow's history");
-  if (scene.base != scenes::Wall::no_slip) refuse(scene, "the arrested profiles hold on a base without slip");
+  if (scene.base.law != scenes::Wall::no_slip)
+    refuse(scene, "the arrested profiles hold on a base without slip");
   if (!(material.yield_stress > 0.0)) refuse(scene, "without a yield stress the material spreads for ever");
   if (!(scene.forces.gravity > 0.0)) refuse(scene, "without gravity nothing slumps");
   const bool plane_flow = scene.geometry.dimension == scenes::Dimension::plane;
@@ -106,7 +107,7 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
   const Bingham material = material_of(scene);
   const double height = scene.duct().height;
   if (scene.thixotropy) refuse(scene, "a thixotropic yield stress changes with the flow's history");
-  if (scene.base != scenes::Wall::no_slip)
+  if (scene.base.law != scenes::Wall::no_slip)
     refuse(scene, "the steady profile holds between plates without slip");
   if (!(material.plastic_viscosity > 0.0))
     refuse(scene, "without a plastic viscosity the flow has no steady state");
@@ -158,6 +159,8 @@ std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem
       return write_slumps(scene, directory);
     case scenes::Kind::duct:
       return write_duct(scene, directory);
+    default:
+      break;
   }
   refuse(scene, "none is known for this kind of scene");
 }

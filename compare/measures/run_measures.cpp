@@ -65,7 +65,7 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
   if (!density || !gravity || !top || !bottom || !height || !(fluid->yield_stress > 0.0) || !(*gravity > 0.0))
     return std::nullopt;
   if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
-  const scenes::SlumpGeometry cone{*height, *top, *bottom, 0.0, 0.0};
+  const scenes::SlumpGeometry cone{*height, *top, *bottom, 0.0, 0.0, {}};
   const auto slump = exact::leading_order_slump({*density, fluid->yield_stress, fluid->plastic_viscosity},
                                                 *gravity, cone.volume());
   return exact::spread_creep(*fluid, slump.radius, slump.depth(0.5 * slump.radius),

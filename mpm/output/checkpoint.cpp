@@ -33,11 +33,13 @@ void write_checkpoint(const std::filesystem::path& directory, const Checkpoint& 
   std::vector<std::int32_t> cells;
   for (const auto& cell : c.solver.cells) cells.insert(cells.end(), cell.begin(), cell.end());
   file.write("/cells", cells, 3);
-  const std::array<std::int32_t, 2> sizes = {c.solver.tile_capacity,
-                                             static_cast<std::int32_t>(c.solver.arrays.size())};
+  const std::array<std::int32_t, 3> sizes = {c.solver.tile_capacity,
+                                             static_cast<std::int32_t>(c.solver.arrays.size()),
+                                             static_cast<std::int32_t>(c.solver.wall_forces.size())};
   file.write("/sizes", sizes);
   for (std::size_t k = 0; k < c.solver.arrays.size(); ++k)
     file.write(fmt::format("/array{:02}", k), c.solver.arrays[k]);
+  if (!c.solver.wall_forces.empty()) file.write("/wall_forces", c.solver.wall_forces);
   file.commit();
 }
 
@@ -62,13 +64,15 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory
   c.solver.cells.resize(cells.size() / 3);
   for (std::size_t i = 0; i < cells.size(); ++i) c.solver.cells[i / 3][i % 3] = cells[i];
   const auto sizes = file.read_integers("/sizes");
-  if (sizes.size() != 2) throw damaged("lacks its sizes");
+  if (sizes.size() != 3) throw damaged("lacks its sizes");
   c.solver.tile_capacity = sizes[0];
   for (int k = 0; k < sizes[1]; ++k) {
     c.solver.arrays.push_back(file.read_doubles(fmt::format("/array{:02}", k)));
     if (c.solver.arrays.back().size() != c.solver.cells.size())
       throw damaged(fmt::format("array {} has the wrong length", k));
   }
+  if (sizes[2] > 0) c.solver.wall_forces = file.read_doubles("/wall_forces");
+  if (std::ssize(c.solver.wall_forces) != sizes[2]) throw damaged("lacks its walls' forces");
   return c;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "mpm/solver/settings.h"
 #include "runs/depth.h"
@@ -76,7 +77,18 @@ Gauges::Gauges(const scenes::Scene& scene)
     : scene_(scene), factor_(whole_body_factor(scene)), cell_(cell_size(scene)) {}
 
 Measures Gauges::measure(Solver& solver) const {
-  return scene_.kind == scenes::Kind::duct ? measure_duct(solver) : measure_slump(solver);
+  switch (scene_.kind) {
+    case scenes::Kind::slump:
+      return measure_slump(solver);
+    case scenes::Kind::duct:
+      return measure_duct(solver);
+    case scenes::Kind::l_box:
+    case scenes::Kind::dam_break:
+      return measure_channel(solver);
+    case scenes::Kind::v_funnel:
+      return measure_v_funnel(solver);
+  }
+  throw std::logic_error("a kind of scene without gauges");
 }
 
 Measures Gauges::measure_slump(Solver& solver) const {
@@ -139,13 +151,133 @@ Measures Gauges::measure_duct(Solver& solver) const {
   return m;
 }
 
+namespace {
+
+/// Depth at which a front is seen, as of a slump's spread. m
+constexpr double front_depth = 0.003;
+
+/// Where the depth over equal bins falls through the front's for the last time, interpolated; the channel's
+/// end where the last bin is deeper. m
+double front_of(const std::vector<double>& centre, const std::vector<double>& depth, double length) {
+  if (!depth.empty() && depth.back() > front_depth) return length;
+  for (std::size_t i = depth.size(); i-- > 1;)
+    if (depth[i - 1] > front_depth)
+      return std::lerp(centre[i - 1], centre[i], (depth[i - 1] - front_depth) / (depth[i - 1] - depth[i]));
+  return 0.0;
+}
+
+/// Mean of the first or the last depths over about `length`, m.
+double mean_depth(const std::vector<double>& depth, double width, double length, bool last) {
+  const auto n =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(length / width)), 1, depth.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) sum += depth[last ? depth.size() - 1 - i : i];
+  return sum / static_cast<double>(n);
+}
+
+}  // namespace
+
+Measures Gauges::measure_channel(Solver& solver) const {
+  constexpr double gauge_length = 0.02;  // m over which the depth at an end is taken
+  Sums sums(scene_, factor_);
+  const bool box = scene_.kind == scenes::Kind::l_box;
+  const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
+  const double begin = box ? scene_.l_box().reservoir_length : 0.0;
+  const bool plane = scene_.spatial_dimension() == 2;
+  const double width = plane ? 1.0 : box ? scene_.l_box().width : scene_.dam_break().width;
+  const auto bins = static_cast<std::size_t>(std::max(1.0, std::round(length / cell_)));
+  const double spacing = length / static_cast<double>(bins);
+  std::vector<double> volume(bins, 0.0);
+  std::vector<Weighted> places;
+  const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
+  solver.visit([&](const ParticleBatch& b) {
+    sums.add(b, vertical);
+    for (std::size_t i = 0; i < b.count; ++i) {
+      const double x = b.position[0][i];
+      places.emplace_back(x, b.mass[i]);
+      volume[static_cast<std::size_t>(std::clamp(x / spacing, 0.0, static_cast<double>(bins - 1)))] +=
+          b.volume[i];
+    }
+  });
+  Measures m = sums.finish();
+  for (std::size_t i = 0; i < bins; ++i) {
+    m.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing);
+    m.value.push_back(factor_ * volume[i] / (spacing * width));
+  }
+  m.front = front_of(m.coordinate, m.value, length) - begin;
+  m.front_mass_995 = quantile(places, 0.995) - begin;
+  m.end_height = mean_depth(m.value, spacing, gauge_length, true);
+  m.start_height = mean_depth(m.value, spacing, gauge_length, false);
+  return m;
+}
+
+Measures Gauges::measure_v_funnel(Solver& solver) const {
+  const auto& g = scene_.v_funnel();
+  Sums sums(scene_, factor_);
+  const auto up = static_cast<std::size_t>(vertical_axis(scene_));
+  const bool full = scene_.geometry.dimension == scenes::Dimension::full, space = up == 2;
+  // Lines of sight through the outlet, one a cell, and the profile over the whole width.
+  const double side = 0.5 * g.outlet_width, deep = 0.5 * g.depth;
+  const auto lines_of = [&](double half) {
+    return static_cast<std::size_t>(std::max(1.0, std::round(half / cell_)));
+  };
+  const std::size_t across = lines_of(side), behind = space ? lines_of(deep) : 1;
+  const double line_area =
+      side / static_cast<double>(across) * (space ? deep / static_cast<double>(behind) : 1.0);
+  std::vector<double> sight(across * behind, 0.0);
+  const auto bins = lines_of(0.5 * g.top_width);
+  const double spacing = 0.5 * g.top_width / static_cast<double>(bins);
+  std::vector<double> volume(bins, 0.0);
+  double below = 0.0, total = 0.0;
+  solver.visit([&](const ParticleBatch& b) {
+    sums.add(b, up);
+    for (std::size_t i = 0; i < b.count; ++i) {
+      total += b.mass[i];
+      if (b.position[up][i] < 0.0) {
+        below += b.mass[i];
+        continue;
+      }
+      const double x = std::abs(b.position[0][i]), y = space ? std::abs(b.position[1][i]) : 0.0;
+      volume[std::min(bins - 1, static_cast<std::size_t>(x / spacing))] += b.volume[i];
+      if (x >= side || y >= deep) continue;
+      const auto column =
+          std::min(across - 1, static_cast<std::size_t>(x / side * static_cast<double>(across)));
+      const auto row =
+          space ? std::min(behind - 1, static_cast<std::size_t>(y / deep * static_cast<double>(behind))) : 0;
+      sight[column * behind + row] += b.volume[i] / line_area;
+    }
+  });
+  Measures m = sums.finish();
+  // A whole funnel folds onto the lines of one quarter.
+  const double folded = full ? 4.0 : 1.0;
+  for (std::size_t i = 0; i < bins; ++i) {
+    m.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing);
+    m.value.push_back(volume[i] / folded / (spacing * (space ? deep : 1.0)));
+  }
+  m.discharged = below / total;
+  m.thinnest_over_outlet = *std::min_element(sight.begin(), sight.end()) / folded;
+  return m;
+}
+
 std::vector<std::string> Gauges::columns() const {
   std::vector<std::string> names = {"time_s"};
-  if (scene_.kind == scenes::Kind::duct) {
-    names.insert(names.end(), {"plug_velocity_m_s", "mean_velocity_m_s"});
-  } else {
-    names.insert(names.end(),
-                 {"spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm"});
+  const auto add = [&](const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+  };
+  switch (scene_.kind) {
+    case scenes::Kind::slump:
+      add({"spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm"});
+      break;
+    case scenes::Kind::duct:
+      add({"plug_velocity_m_s", "mean_velocity_m_s"});
+      break;
+    case scenes::Kind::l_box:
+    case scenes::Kind::dam_break:
+      add({"front_mm", "front_mass_995_mm", "end_height_mm", "start_height_mm"});
+      break;
+    case scenes::Kind::v_funnel:
+      add({"discharged_fraction", "thinnest_sight_mm"});
+      break;
   }
   names.insert(names.end(), {"volume_m3", "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J",
                              "elastic_energy_J", "dissipated_energy_J", "numerical_energy_J",
@@ -156,13 +288,24 @@ std::vector<std::string> Gauges::columns() const {
 
 std::vector<double> Gauges::row(double time, double step, const Measures& m) const {
   std::vector<double> row = {time};
-  if (scene_.kind == scenes::Kind::duct) {
-    row.insert(row.end(), {headline_value(m), m.mean_velocity});
-  } else {
-    for (const double threshold : {0.003, 0.0015, 0.006})
-      row.push_back(1e3 * runs::spread(m.coordinate, m.value, threshold));
-    row.push_back(1e3 * m.spread_mass_995);
-    row.push_back(1e3 * runs::centre_depth(m.coordinate, m.value));
+  switch (scene_.kind) {
+    case scenes::Kind::slump:
+      for (const double threshold : {0.003, 0.0015, 0.006})
+        row.push_back(1e3 * runs::spread(m.coordinate, m.value, threshold));
+      row.push_back(1e3 * m.spread_mass_995);
+      row.push_back(1e3 * runs::centre_depth(m.coordinate, m.value));
+      break;
+    case scenes::Kind::duct:
+      row.insert(row.end(), {headline_value(m), m.mean_velocity});
+      break;
+    case scenes::Kind::l_box:
+    case scenes::Kind::dam_break:
+      row.insert(row.end(),
+                 {1e3 * m.front, 1e3 * m.front_mass_995, 1e3 * m.end_height, 1e3 * m.start_height});
+      break;
+    case scenes::Kind::v_funnel:
+      row.insert(row.end(), {m.discharged, 1e3 * m.thinnest_over_outlet});
+      break;
   }
   const Energies& e = m.energies;
   row.insert(row.end(), {m.volume, m.volume_at_rest, e.kinetic, e.potential, e.elastic, e.dissipated,
@@ -172,15 +315,25 @@ std::vector<double> Gauges::row(double time, double step, const Measures& m) con
 }
 
 double Gauges::headline_value(const Measures& m) const {
-  if (scene_.kind != scenes::Kind::duct) return 1e3 * runs::spread(m.coordinate, m.value);
+  if (scene_.kind == scenes::Kind::slump) return 1e3 * runs::spread(m.coordinate, m.value);
+  if (scene_.kind == scenes::Kind::v_funnel) return 100.0 * m.discharged;
+  if (scene_.kind != scenes::Kind::duct) return 1e3 * m.front;
   // The plug is the middle of the duct: the mean of the innermost two rows.
   const std::size_t middle = m.value.size() / 2;
   return m.value.size() < 2 ? 0.0 : 0.5 * (m.value[middle - 1] + m.value[middle]);
 }
 
 std::string Gauges::headline(const Measures& m) const {
-  return scene_.kind == scenes::Kind::duct ? fmt::format("plug {:.4f} m/s", headline_value(m))
-                                           : fmt::format("spread {:.1f} mm", headline_value(m));
+  switch (scene_.kind) {
+    case scenes::Kind::slump:
+      return fmt::format("spread {:.1f} mm", headline_value(m));
+    case scenes::Kind::duct:
+      return fmt::format("plug {:.4f} m/s", headline_value(m));
+    case scenes::Kind::v_funnel:
+      return fmt::format("discharged {:.1f} %", headline_value(m));
+    default:
+      return fmt::format("front {:.1f} mm", headline_value(m));
+  }
 }
 
 }  // namespace flowrest::mpm

@@ -28,6 +28,12 @@ struct Measures {
   double highest = 0.0;                   ///< m
   std::vector<double> coordinate, value;  ///< the profile: radius and depth, or height and velocity
   double spread_mass_995 = 0.0;           ///< m, twice the radius that holds 99.5 % of the mass (slump)
+  double front = 0.0;                     ///< m, from the gate or the tank's corner (l-box, dam-break)
+  double front_mass_995 = 0.0;            ///< m, the same of 99.5 % of the mass
+  double end_height = 0.0;                ///< m, depth at the far end (l-box, dam-break)
+  double start_height = 0.0;              ///< m, depth at the back wall (l-box, dam-break)
+  double discharged = 0.0;                ///< share of the mass below the outlet (v-funnel)
+  double thinnest_over_outlet = 0.0;      ///< m of material in the thinnest line of sight (v-funnel)
 };
 
 /// Measures a scene's particles and lays the results out as rows of history.csv.
@@ -44,6 +50,8 @@ class Gauges {
  private:
   Measures measure_slump(Solver&) const;
   Measures measure_duct(Solver&) const;
+  Measures measure_channel(Solver&) const;
+  Measures measure_v_funnel(Solver&) const;
 
   const scenes::Scene& scene_;
   double factor_;  ///< whole body over what is simulated

@@ -126,12 +126,14 @@ class MpmRun {
     const double step = next_step();
     // A step of Courant number 0.75, the default, is plain APIC; a shorter one smooths as much a second.
     solver_->set_apic_relaxation_time(scene_.mpm.apic_relaxation_time.value_or(0.75 * cell_crossing_time()));
+    solver_->set_time(state_.time);
     const StepResult result = solver_->step(step, acceleration_at(scene_, state_.time));
     state_.step = step;
     state_.steps += 1.0;
     state_.largest_speed = result.largest_speed;
     state_.largest_pressure = result.largest_pressure;
     state_.dissipated += factor_ * result.dissipated;
+    state_.work += factor_ * result.wall_work;
     if (!scene_.forces.body_force.empty())
       state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
@@ -145,7 +147,8 @@ class MpmRun {
   }
 
   double free_fall_speed() const {
-    const double drop = scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : 0.0;
+    double drop = scene_.kind == scenes::Kind::duct ? 0.0 : scene_.body_height();
+    if (scene_.kind == scenes::Kind::v_funnel) drop += scene_.v_funnel().fall_height;
     return std::sqrt(2.0 * scene_.forces.gravity * drop);
   }
 
@@ -218,8 +221,7 @@ class MpmRun {
     const auto a = acceleration_at(scene_, state_.time);
     double driving = 0.0;
     for (const double c : a) driving = std::max(driving, std::abs(c));
-    const double length =
-        scene_.kind == scenes::Kind::slump ? scene_.slump().cone_height : scene_.duct().height;
+    const double length = scene_.body_height();
     return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
   }
 

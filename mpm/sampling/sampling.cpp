@@ -26,6 +26,54 @@ struct Body {
   double volume = 0.0;
 };
 
+/// Whether the material has come to rest in a container before the scene begins, and so carries its weight.
+bool stands_in_a_container(const scenes::Scene& scene) {
+  return scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel ||
+         (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity);
+}
+
+/// Volume ratios of material under its own weight (Yu et al. 2026, Eq. 6 solved for J), against the depth
+/// under its surface.
+class WeightTable {
+ public:
+  explicit WeightTable(const scenes::Scene& scene)
+      : thickness_(scene.body_height() / (entries - 1)),
+        bulk_modulus_(scene.material.bulk_modulus()),
+        exponent_(scene.material.equation_of_state_exponent) {
+    // Downwards by the midpoint rule: dp = density / J g dz.
+    const double weight = scene.material.density * scene.forces.gravity;
+    double pressure = 0.0;
+    for (int i = 0; i < entries; ++i) {
+      ratio_.push_back(ratio_at(pressure));
+      const double middle = pressure + 0.5 * thickness_ * weight / ratio_at(pressure);
+      pressure += thickness_ * weight / ratio_at(middle);
+    }
+  }
+  double ratio(double depth) const {
+    const double place = std::clamp(depth / thickness_, 0.0, entries - 1.0);
+    const auto i = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(entries - 2));
+    return std::lerp(ratio_[i], ratio_[i + 1], place - static_cast<double>(i));
+  }
+  /// Height that a column of this height without weight takes under it, m.
+  double settled(double height) const {
+    double filled = 0.0, place = 0.0;
+    const double slice = 1e-4 * height;
+    while (filled < height) {
+      filled += slice / ratio(place);
+      place += slice;
+    }
+    return place - (filled - height) * ratio(place);
+  }
+
+ private:
+  static constexpr int entries = 1001;
+  double ratio_at(double pressure) const {
+    return 1.0 - std::log1p(exponent_ * pressure / bulk_modulus_) / exponent_;
+  }
+  double thickness_, bulk_modulus_, exponent_;
+  std::vector<double> ratio_;
+};
+
 Body cone(const scenes::Scene& scene) {
   const auto& g = scene.slump();
   const int dim = scene.spatial_dimension();
@@ -50,12 +98,76 @@ Body cone(const scenes::Scene& scene) {
   return body;
 }
 
+/// A box from the origin.
+Body box(const Point& size) {
+  Body body;
+  body.upper = size;
+  body.volume = 1.0;
+  for (const double edge : size)
+    if (edge > 0.0) body.volume *= edge;
+  body.contains = [size](const Point& x) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (x[a] < 0.0 || x[a] > size[a]) return false;
+    return true;
+  };
+  return body;
+}
+
+/// The reservoir, as far as its concrete fills it under its own weight.
+Body l_box(const scenes::Scene& scene) {
+  const auto& g = scene.l_box();
+  const double height = WeightTable(scene).settled(g.reservoir_height);
+  if (scene.spatial_dimension() == 2) return box({g.reservoir_length, height, 0.0});
+  const bool half = scene.geometry.dimension == scenes::Dimension::half;
+  return box({g.reservoir_length, half ? 0.5 * g.width : g.width, height});
+}
+
+Body dam_break(const scenes::Scene& scene) {
+  const auto& g = scene.dam_break();
+  if (scene.spatial_dimension() == 2) return box({g.column_length, g.column_height, 0.0});
+  return box({g.column_length, g.width, g.column_height});
+}
+
+Body v_funnel(const scenes::Scene& scene) {
+  const auto& g = scene.v_funnel();
+  const int dim = scene.spatial_dimension();
+  const auto up = static_cast<std::size_t>(dim - 1);
+  const bool full = scene.geometry.dimension == scenes::Dimension::full;
+  Body body;
+  body.upper = {0.5 * g.top_width, dim == 3 ? 0.5 * g.depth : 0.0, 0.0};
+  for (std::size_t a = 0; a < up; ++a) body.lower[a] = full ? -body.upper[a] : 0.0;
+  body.upper[up] = g.height();
+  body.contains = [g, up, lower = body.lower, upper = body.upper](const Point& x) {
+    for (std::size_t a = 0; a <= up; ++a)
+      if (x[a] < lower[a] || x[a] > upper[a]) return false;
+    return std::abs(x[0]) <= 0.5 * g.width_at(x[up]);
+  };
+  body.volume = dim == 2 ? 0.5 * g.volume() / g.depth : g.volume() / whole_body_factor(scene);
+  return body;
+}
+
 Body duct(const scenes::Scene& scene) {
   Body body;
   body.upper = {block_edge * cell_size(scene), scene.duct().height, 0.0};
   body.contains = [top = scene.duct().height](const Point& x) { return x[1] >= 0.0 && x[1] <= top; };
   body.volume = body.upper[0] * body.upper[1];
   return body;
+}
+
+Body body_of(const scenes::Scene& scene) {
+  switch (scene.kind) {
+    case scenes::Kind::slump:
+      return cone(scene);
+    case scenes::Kind::duct:
+      return duct(scene);
+    case scenes::Kind::l_box:
+      return l_box(scene);
+    case scenes::Kind::v_funnel:
+      return v_funnel(scene);
+    case scenes::Kind::dam_break:
+      return dam_break(scene);
+  }
+  return {};
 }
 
 class Sampler {
@@ -160,8 +272,17 @@ class Sampler {
 }  // namespace
 
 std::vector<Seed> seed_particles(const scenes::Scene& scene) {
-  const Body body = scene.kind == scenes::Kind::duct ? duct(scene) : cone(scene);
-  return Sampler(scene, body).sample();
+  const Body body = body_of(scene);
+  std::vector<Seed> seeds = Sampler(scene, body).sample();
+  if (!stands_in_a_container(scene)) return seeds;
+  const auto up = static_cast<std::size_t>(vertical_axis(scene));
+  const double cell = cell_size(scene);
+  const WeightTable table(scene);
+  for (Seed& seed : seeds) {
+    seed.volume_ratio = table.ratio(body.upper[up] - (seed.cell[up] + seed.position[up]) * cell);
+    seed.volume /= seed.volume_ratio;
+  }
+  return seeds;
 }
 
 }  // namespace flowrest::mpm

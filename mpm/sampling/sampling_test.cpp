@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "mpm/solver/settings.h"
@@ -155,6 +156,60 @@ TEST(Sampling, AQuarterIsAQuarterOfTheFullCone) {
   const double r = 0.05, b = 0.1,
                exact = 0.3 / 4.0 * (b * b + 2 * b * r + 3 * r * r) / (b * b + b * r + r * r);
   EXPECT_NEAR(centre[2] / total(full), exact, 2e-3 * exact);
+}
+
+TEST(Sampling, ContainersAreFilledToTheirVolumesWithinTheirWalls) {
+  for (const std::string name : {"mix-a-lbox-sf0", "mix-a-vfunnel-sf0", "dam-break", "mix-a-slump-sf0"})
+    for (const std::string dimension : {"plane", "full", "half", "quarter", "axisymmetric"}) {
+      std::optional<scenes::Scene> scene;
+      try {
+        scene = scenes::load_scene(name, {{"geometry.dimension=" + dimension}, {}});
+      } catch (const scenes::SceneError&) {
+        continue;  // not one of the kind's own
+      }
+      const double cell = cell_size(*scene);
+      const auto walls = settings_of(*scene).walls;
+      double filled = 0.0;
+      for (const Seed& s : seed_particles(*scene)) {
+        filled += s.volume * s.volume_ratio;
+        for (const Wall& wall : walls)
+          ASSERT_GE(wall.distance(place(s, cell), 0.0), -1e-9) << name << wall.name;
+      }
+      double volume = 0.0;
+      const bool plane = dimension == "plane";
+      if (scene->kind == scenes::Kind::l_box) volume = plane ? 0.1 * 0.6 : 0.012;
+      if (scene->kind == scenes::Kind::v_funnel) volume = scene->v_funnel().volume() / (plane ? 0.075 : 1.0);
+      if (scene->kind == scenes::Kind::dam_break) volume = plane ? 0.36 : 0.36 * 0.15;
+      if (scene->kind == scenes::Kind::slump) volume = plane ? 0.15 * 0.3 : scene->slump().volume();
+      // A column's top sinks under its own weight, by less than what its foot's pressure would press it.
+      const bool settled = scene->kind == scenes::Kind::l_box;
+      EXPECT_NEAR(filled * whole_body_factor(*scene), volume, settled ? 0.04 * volume : 1e-9 * volume)
+          << name << " " << dimension;
+    }
+}
+
+TEST(Sampling, ConcreteInAContainerCarriesItsWeightFromTheStart) {
+  const auto scene = scenes::load_scene("mix-a-lbox-sf0", {{"geometry.dimension=plane"}, {}});
+  const auto settings = settings_of(scene);
+  const auto seeds = seed_particles(scene);
+  double volume = 0.0, top = 0.0;
+  for (const Seed& s : seeds) {
+    volume += s.volume;
+    top = std::max(top, place(s, 0.01)[1]);
+  }
+  EXPECT_NEAR(volume, 0.06, 1e-4 * 0.06);  // 12 litres for the whole width, without pressure
+  EXPECT_LT(top, 0.595);
+  for (const Seed& s : seeds) {
+    // Its pressure bears the material above: the weight of what lies over it, to a few parts in a thousand.
+    const double pressure = settings.state.at(s.volume_ratio).pressure;
+    double above = 0.0;
+    for (const Seed& t : seeds) {
+      if (place(t, 0.01)[1] > place(s, 0.01)[1]) above += t.volume;
+      if (place(t, 0.01)[1] == place(s, 0.01)[1]) above += 0.5 * t.volume;
+    }
+    ASSERT_NEAR(pressure, above / 0.1 * 2400.0 * 9.81, 0.005 * 14000.0);
+    if (s.cell[0] > 0) break;
+  }
 }
 
 TEST(Sampling, FlocculationBeginsAsTheSceneSays) {

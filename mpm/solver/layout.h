@@ -57,6 +57,7 @@ struct BlockView {
   const std::uint32_t* list = nullptr;   ///< particles, sorted by cell
   const std::uint32_t* start = nullptr;  ///< cells_per_block + 1 offsets into list
   bool contiguous = false;               ///< list[i] == list[0] + i
+  bool near_wall = false;                ///< a wall that is no plane along the grid may reach into it
   const std::uint32_t* plus =
       nullptr;              ///< slots of the 2^Dim blocks at +{0,1} per axis; no_slot where absent
   Mover* movers = nullptr;  ///< room for every particle of the block

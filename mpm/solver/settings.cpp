@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mpm/boundary/scene_walls.h"
+
 namespace flowrest::mpm {
 
 namespace {
@@ -21,29 +23,9 @@ Law law_of(scenes::Model model, bool thixotropic) {
   return Law::newtonian;
 }
 
-PlaneWall wall_of(scenes::Wall wall) {
-  return wall == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip;
-}
-
 double density_correction(const scenes::Mpm& mpm) {
   if (mpm.scheme == scenes::Scheme::paper) return 0.0;
   return mpm.density_correction.value_or(mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3);
-}
-
-std::array<AxisBounds, 3> bounds_of(const scenes::Scene& scene) {
-  std::array<AxisBounds, 3> bounds{};
-  const auto vertical = static_cast<std::size_t>(vertical_axis(scene));
-  if (scene.kind == scenes::Kind::duct) {
-    bounds[0] = {PlaneWall::none, PlaneWall::none, 0, block_edge, true};
-    const int layers = static_cast<int>(std::lround(scene.duct().height / cell_size(scene)));
-    bounds[1] = {wall_of(scene.base), wall_of(scene.base), 0, layers, false};
-    return bounds;
-  }
-  // The axis of symmetry and planes of symmetry mirror the body: what a slip wall does.
-  if (scene.geometry.dimension != scenes::Dimension::full)
-    for (std::size_t a = 0; a < vertical; ++a) bounds[a].lower = PlaneWall::slip;
-  bounds[vertical].lower = wall_of(scene.base);
-  return bounds;
 }
 
 }  // namespace
@@ -54,12 +36,15 @@ double cell_size(const scenes::Scene& scene) {
 }
 
 double whole_body_factor(const scenes::Scene& scene) {
-  if (scene.kind == scenes::Kind::duct) return 1.0;
+  // A slump's and a funnel's section are cut in half along the middle, the others have no middle.
+  const bool halved = scene.kind == scenes::Kind::slump || scene.kind == scenes::Kind::v_funnel;
   switch (scene.geometry.dimension) {
     case scenes::Dimension::quarter:
       return 4.0;
-    case scenes::Dimension::plane:
+    case scenes::Dimension::half:
       return 2.0;
+    case scenes::Dimension::plane:
+      return halved ? 2.0 : 1.0;
     default:
       return 1.0;
   }
@@ -100,7 +85,9 @@ SolverSettings settings_of(const scenes::Scene& scene) {
     s.flow.deflocculation = scene.thixotropy->deflocculation_coefficient;
   }
   s.state = {m.bulk_modulus(), m.shear_modulus(), m.equation_of_state_exponent};
-  s.bounds = bounds_of(scene);
+  const SceneWalls walls = walls_of(scene, s.cell);
+  s.bounds = walls.bounds;
+  s.walls = walls.walls;
   s.threads = scene.mpm.threads;
   return s;
 }

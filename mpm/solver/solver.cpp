@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/boundary/wall_contact.h"
 #include "mpm/material/deviator.h"
 #include "mpm/solver/particles.h"
 #include "mpm/transfer/shape.h"
@@ -36,7 +37,8 @@ class SolverOf final : public Solver {
         v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
       }
       v.mass[p] = static_cast<T>(seeds[p].volume * settings.density);
-      v.volume_ratio[p] = T(1);
+      v.volume_ratio[p] = static_cast<T>(seeds[p].volume_ratio);
+      v.pressure[p] = parameters_.state.at(v.volume_ratio[p]).pressure;
       if (v.lambda) v.lambda[p] = static_cast<T>(seeds[p].flocculation);
     }
     blocks_.build(cells);
@@ -53,6 +55,7 @@ class SolverOf final : public Solver {
     }
     blocks_.build(state.cells);
     tile_capacity_ = state.tile_capacity;
+    if (contact_) contact_->set_forces(state.wall_forces);
     prepare();
   }
 
@@ -60,13 +63,19 @@ class SolverOf final : public Solver {
     parameters_.step = static_cast<T>(step);
     parameters_.keep = static_cast<T>(share_kept(step));
     for (std::size_t a = 0; a < 3; ++a) parameters_.acceleration[a] = static_cast<T>(acceleration[a]);
+    drive_ = step * std::hypot(acceleration[0], acceleration[1], acceleration[2]);
+    wall_work_ = 0.0;
     run_stages();
-    const StepResult result = collect(step);
+    StepResult result = collect(step);
+    result.wall_work = wall_work_;
+    time_ += step;
     relocate();
     return result;
   }
 
   void set_apic_relaxation_time(double time) override { apic_relaxation_time_ = time; }
+  void set_time(double time) override { time_ = time; }
+  Vector wall_force(std::size_t wall) const override { return contact_ ? contact_->force(wall) : Vector{}; }
 
   void visit(const std::function<void(const ParticleBatch&)>& use) override {
     ParticleBatch batch;
@@ -87,6 +96,7 @@ class SolverOf final : public Solver {
       for (const auto p : order) to.push_back(static_cast<double>(particles_.array(k)[p]));
     }
     out.tile_capacity = tile_capacity_;
+    if (contact_) out.wall_forces = contact_->forces();
     return out;
   }
 
@@ -140,6 +150,17 @@ class SolverOf final : public Solver {
     const double full =
         settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
     p.smallest_mass = static_cast<T>(full * 1e-25);
+    if (settings.walls.empty()) return;
+    contact_ = std::make_unique<WallContact<T>>(
+        typename WallContact<T>::Grid{settings.dimension, settings.transfer == Transfer::quadratic_apic,
+                                      settings.cell, settings.bounds},
+        settings.walls);
+    for (const Wall& wall : settings.walls)
+      walls_move_ |= wall.motion.moves() || std::isfinite(wall.opens_at);
+    p.walls = this;
+    p.keep_out = [](const void* self, double(&place)[3]) {
+      return static_cast<const SolverOf*>(self)->keep_out(place);
+    };
   }
 
   /// Share of their own velocity that particles keep over a step. APIC: the rest, and so the smoothing of the
@@ -148,6 +169,31 @@ class SolverOf final : public Solver {
     if (settings_.transfer == Transfer::quadratic_apic)
       return std::max(0.0, 1.0 - step / std::max(apic_relaxation_time_, step));
     return std::exp(-step / settings_.flip_relaxation_time);
+  }
+
+  /// Out of the walls as they are at the step's end.
+  bool keep_out(double (&place)[3]) const {
+    constexpr double farthest = 0.5;  // cells
+    Vector x = {place[0], place[1], place[2]};
+    const double end = time_ + static_cast<double>(parameters_.step);
+    if (!push_out(settings_.walls, settings_.dimension, end, farthest * settings_.cell, x)) return false;
+    std::copy(x.begin(), x.end(), place);
+    return true;
+  }
+
+  /// Finds the blocks into which a wall may reach within a step.
+  void mark_blocks_near_walls() {
+    const double edge = block_edge * settings_.cell;
+    const double reach = 0.5 * edge * std::sqrt(settings_.dimension) + settings_.cell;
+    for (BlockView& view : views_) {
+      Vector centre{};
+      for (int a = 0; a < settings_.dimension; ++a)
+        centre[static_cast<std::size_t>(a)] = view.origin[a] * settings_.cell + 0.5 * edge;
+      view.near_wall = std::any_of(settings_.walls.begin(), settings_.walls.end(), [&](const Wall& wall) {
+        return wall.stands(time_) && wall.distance(centre, time_) < reach;
+      });
+    }
+    marked_at_ = time_;
   }
 
   static bool is_thixotropic(Law law) {
@@ -189,11 +235,16 @@ class SolverOf final : public Solver {
     for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
     node_views_.clear();
     for (std::uint32_t slot = 0; slot < slots; ++slot) node_views_.push_back(blocks_.node_view(slot));
+    if (contact_) mark_blocks_near_walls();
     stale_ = false;
   }
 
   void run_stages() {
     if (stale_) prepare();
+    if (contact_) {
+      if (walls_move_ && marked_at_ != time_) mark_blocks_near_walls();
+      contact_->place(blocks_, time_);
+    }
     const auto blocks = static_cast<std::int64_t>(views_.size());
     const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
     const ParticleView<T>& view = particles_.view();
@@ -221,6 +272,10 @@ class SolverOf final : public Solver {
       over_blocks(kernels_.particles_to_grid);
       mark(1);
       over_nodes(kernels_.update_nodes);
+      if (contact_) {
+#pragma omp single
+        wall_work_ = contact_->apply(nodes, static_cast<double>(parameters_.step), drive_);
+      }
       mark(2);
 #pragma omp for schedule(static)
       for (std::int64_t b = 0; b < blocks; ++b) *views_[static_cast<std::size_t>(b)].sums = {};
@@ -228,6 +283,10 @@ class SolverOf final : public Solver {
       mark(3);
       if (kernels_.remapped_to_particles) {
         over_nodes(kernels_.remap_nodes);
+        if (contact_) {
+#pragma omp single
+          contact_->apply_to_remapped(nodes, static_cast<double>(parameters_.step), drive_);
+        }
         mark(4);
         over_blocks(kernels_.remapped_to_particles);
       } else {
@@ -334,6 +393,11 @@ class SolverOf final : public Solver {
   Kernels<T> kernels_;
   StepParameters<T> parameters_;
   double apic_relaxation_time_ = 0.0;
+  std::unique_ptr<WallContact<T>> contact_;  ///< null where no wall but planes along the grid is given
+  bool walls_move_ = false;
+  double time_ = 0.0, marked_at_ = -1.0;  ///< s
+  double drive_ = 0.0;                    ///< m/s that the driving force gives in a step
+  double wall_work_ = 0.0;                ///< J in this step
   int threads_ = 1;
   int tile_capacity_ = usual_tile_capacity;
   AlignedArray<T> arenas_, nodes_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/boundary/walls.h"
 #include "mpm/solver/kernels.h"
 #include "mpm/solver/sparse_blocks.h"
 #include "scenes/scene.h"
@@ -29,6 +30,7 @@ struct SolverSettings {
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
+  std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
   int threads = 0;              ///< 0: as many as the particles can feed, up to all cores
   std::string instruction_set;  ///< empty: the best this machine runs
 };
@@ -40,6 +42,7 @@ struct Seed {
   double volume = 0.0;               ///< m3
   std::array<double, 3> velocity{};  ///< m/s
   double flocculation = 0.0;
+  double volume_ratio = 1.0;  ///< J; `volume` is that at rest
 };
 
 /// Extremes and sums of one step.
@@ -47,6 +50,7 @@ struct StepResult {
   double largest_speed = 0.0;     ///< m/s
   double largest_pressure = 0.0;  ///< Pa
   double dissipated = 0.0;        ///< J in this step
+  double wall_work = 0.0;         ///< J done in this step by walls that are not along the grid
   double momentum = 0.0;          ///< kg m/s along the first axis, of the velocities that moved the particles
 };
 
@@ -75,6 +79,7 @@ struct SolverState {
   std::vector<std::vector<double>>
       arrays;  ///< of every array, in the order of Particles; exact for either precision
   int tile_capacity = 0;
+  std::vector<double> wall_forces;  ///< N, at the walls' points: what the next step's contact starts from
 };
 
 /// A material point solver for one scene. One call of a virtual function per step; none inside.
@@ -87,6 +92,10 @@ class Solver {
   /// Sets the time over which APIC's transfer smooths velocities once, s; zero, as a solver starts, for once
   /// a step. Linear transfers have their own, fixed one.
   virtual void set_apic_relaxation_time(double) = 0;
+  /// Says what time it is, for walls that move: s at the next step's beginning.
+  virtual void set_time(double) = 0;
+  /// Force of a wall of the settings on the material in the last step, N.
+  virtual Vector wall_force(std::size_t wall) const = 0;
   /// Calls `use` for every block in turn.
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
   virtual SolverState state() = 0;

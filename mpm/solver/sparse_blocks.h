@@ -50,6 +50,12 @@ class SparseBlocks {
   void clear_sums(std::uint32_t slot) { slots_[slot].sums = {}; }
   std::size_t fullest_cell() const { return fullest_cell_; }
 
+  /// Slot of a block of cells, wrapped where periodic; no_slot where it does not exist.
+  std::uint32_t slot_of(std::array<std::int32_t, 3> block) const {
+    wrap(block);
+    return slot_at(block);
+  }
+
   /// Global cell of a particle.
   CellIndex cell_of(std::uint32_t particle) const;
   std::size_t bytes() const;

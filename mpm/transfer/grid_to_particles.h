@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mpm/boundary/keep_out.h"
 #include "mpm/material/stress_update.h"
 #include "mpm/transfer/gather.h"
 #include "mpm/transfer/nodes.h"
@@ -186,6 +187,7 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
     momentum += mass[q] * advection[0][q];
     largest_speed = largest_speed > square ? largest_speed : square;
   }
+  if (tile.block.near_wall) keep_out_of_walls<T, Dim>(step, tile, x, left);
   for (int q = 0; q < count; ++q)
     if (left[q] != T(0)) note_mover<T, Dim, Shape>(tile, x, q);
   for (int a = 0; a < Dim; ++a) tile.close(particles.position[a], x[a]);

@@ -1,0 +1,367 @@
+// Walls of any shape: their distances, and bodies that slide, stick, rest and run into them.
+#include "mpm/boundary/walls.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "mpm/solver/test_bodies.h"
+
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::test;
+
+namespace {
+
+constexpr double gravity = 9.81;
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Directions of a wall in the plane of the first and the last axis, turned from the grid by `angle`.
+struct Frame {
+  Vector along{}, up{};
+  Frame(double angle, int dimension) {
+    const auto last = static_cast<std::size_t>(dimension - 1);
+    along[0] = std::cos(angle);
+    along[last] = std::sin(angle);
+    up[0] = -std::sin(angle);
+    up[last] = std::cos(angle);
+  }
+};
+
+Vector combined(const Vector& origin, const Frame& f, double along, double up, double across) {
+  Vector x;
+  for (std::size_t a = 0; a < 3; ++a) x[a] = origin[a] + along * f.along[a] + up * f.up[a];
+  if (f.up[1] == 0.0 && f.along[1] == 0.0) x[1] += across;
+  return x;
+}
+
+Seed seed_at(const Vector& x, double cell, double volume, int dimension) {
+  Seed s;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+    s.cell[a] = static_cast<int>(std::floor(x[a] / cell));
+    s.position[a] = x[a] / cell - s.cell[a];
+  }
+  s.volume = volume;
+  return s;
+}
+
+constexpr Vector place_on_wall = {0.5, 0.5, 0.5};
+
+/// A block whose base lies on a wall through `place_on_wall`, `length` by `height` cells (and four across in
+/// space), three particles along a cell's edge, on a lattice along the wall.
+std::vector<Seed> block_on_wall(const SolverSettings& s, const Frame& f, int length, int height) {
+  std::vector<Seed> seeds;
+  const double spacing = s.cell / 3.0;
+  const int across = s.dimension == 3 ? 12 : 1;
+  for (int i = 0; i < 3 * length; ++i)
+    for (int k = 0; k < 3 * height; ++k)
+      for (int j = 0; j < across; ++j)
+        seeds.push_back(seed_at(combined(place_on_wall, f, (i + 0.5 - 1.5 * length) * spacing,
+                                         (k + 0.5) * spacing, s.dimension == 3 ? (j + 0.5) * spacing : 0.0),
+                                s.cell, std::pow(spacing, s.dimension), s.dimension));
+  return seeds;
+}
+
+Wall plane_wall(int dimension, const Frame& f, Contact contact, double friction) {
+  const Extent extent = {{0.0, 0.2, 0.0}, {1.6, dimension == 3 ? 0.8 : 1.6, 1.6}};
+  Wall wall;
+  wall.name = "plane";
+  wall.shape = std::make_shared<HalfSpace>(dimension, place_on_wall, f.up, extent);
+  wall.contact = contact;
+  wall.friction = friction;
+  return wall;
+}
+
+/// Mean velocity along a direction, m/s.
+double mean_velocity(Solver& solver, const Vector& direction) {
+  double momentum = 0.0, mass = 0.0;
+  solver.visit([&](const ParticleBatch& b) {
+    for (std::size_t i = 0; i < b.count; ++i) {
+      mass += b.mass[i];
+      for (std::size_t a = 0; a < 3; ++a) momentum += b.mass[i] * b.velocity[a][i] * direction[a];
+    }
+  });
+  return momentum / mass;
+}
+
+double lowest_distance(Solver& solver, const Wall& wall, double time) {
+  double lowest = 1.0;
+  solver.visit([&](const ParticleBatch& b) {
+    for (std::size_t i = 0; i < b.count; ++i)
+      lowest = std::min(lowest, wall.distance({b.position[0][i], b.position[1][i], b.position[2][i]}, time));
+  });
+  return lowest;
+}
+
+SolverSettings elastic(const Variant& v) {
+  SolverSettings s = concrete(v);
+  s.flow.yield_stress = 1e9;
+  return s;
+}
+
+/// Acceleration over `time` of a block on a wall that is turned by `angle` from the grid, once the block has
+/// settled on the level wall and the wall is then inclined by `slope` to the horizontal, m/s2.
+double sliding_acceleration(const Variant& v, double angle, double slope, double friction, double time) {
+  SolverSettings s = elastic(v);
+  const Frame f(angle, v.dimension);
+  s.walls = {plane_wall(v.dimension, f, Contact::friction, friction)};
+  // A flat slab: a tall elastic block takes to rocking, which real ones do too (friction-driven flutter).
+  auto solver = make_solver(s, block_on_wall(s, f, 12, 2));
+  const double step = usual_step(s);
+  const auto advance = [&](double inclination, double span) {
+    std::array<double, 3> pull{};
+    for (std::size_t a = 0; a < 3; ++a)
+      pull[a] = gravity * (std::sin(inclination) * f.along[a] - std::cos(inclination) * f.up[a]);
+    const int steps = static_cast<int>(std::ceil(span / step));
+    for (int i = 0; i < steps; ++i) solver->step(step, pull);
+    return steps * step;
+  };
+  advance(0.0, 0.3);
+  // Inclining it takes weight off the wall, and the block bounces on it for a while.
+  advance(slope, 0.3);
+  const double early = mean_velocity(*solver, f.along);
+  const double span = advance(slope, time);
+  return (mean_velocity(*solver, f.along) - early) / span;
+}
+
+}  // namespace
+
+TEST(WallShape, DistancesAreThoseOfGeometry) {
+  const HalfSpace plane(3, {0.0, 0.0, 1.0}, {0.0, 3.0, 4.0}, {{-1, -1, 0}, {1, 1, 2}});
+  EXPECT_NEAR(plane.distance({5.0, 3.0, 5.0}), 0.6 * 3.0 + 0.8 * 4.0, 1e-15);
+  const Outline square = {{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {true, true, true, true}};
+  EXPECT_NEAR(square.distance(1.0, 0.25), -0.25, 1e-15);
+  EXPECT_NEAR(square.distance(5.0, 5.0), 5.0, 1e-15);
+  EXPECT_NEAR(square.distance(1.0, -0.5), 0.5, 1e-15);
+  const Prism bar(square, {Sweep::extruded, 1, -1.0, 1.0});
+  EXPECT_NEAR(bar.distance({1.0, 0.0, 3.0}), 2.0, 1e-15);
+  EXPECT_NEAR(bar.distance({6.0, 4.0, 0.5}), 5.0, 1e-15);
+  EXPECT_NEAR(bar.distance({1.0, 0.9, 0.5}), -0.1, 1e-15);
+  const Prism ring({{{1, 0}, {2, 0}, {2, 1}, {1, 1}}, {true, true, true, true}},
+                   {Sweep::revolved, 2, 0.0, 1.0});
+  EXPECT_NEAR(ring.distance({0.3, 0.4, 0.5}), 0.5, 1e-15);
+  EXPECT_NEAR(ring.distance({0.9, 1.2, 0.75}), -0.25, 1e-15);
+  const Cylinder rebar(3, {1.0, 1.0, 0.0}, 0.5, 0.0, 2.0);
+  EXPECT_NEAR(rebar.distance({1.0, 2.0, 1.0}), 0.5, 1e-15);
+  EXPECT_NEAR(rebar.distance({1.0, 4.5, 6.0}), 5.0, 1e-15);
+}
+
+TEST(WallShape, SurfacePointsLieOnTheSurfaceWithTheirNormalsOutwards) {
+  const std::vector<std::shared_ptr<const WallShape>> shapes = {
+      std::make_shared<HalfSpace>(3, Vector{0.5, 0.5, 0.5}, Vector{1, 2, 3}, Extent{{0, 0, 0}, {1, 1, 1}}),
+      std::make_shared<HalfSpace>(2, Vector{0.5, 0.5, 0.0}, Vector{-1, 2, 0}, Extent{{0, 0, 0}, {1, 1, 0}}),
+      std::make_shared<Prism>(Outline{{{0.1, 0.0}, {0.4, 0.0}, {0.3, 0.6}}, {true, false, true}},
+                              Prism::Swept{Sweep::extruded, 0, 0.0, 0.2}),
+      std::make_shared<Prism>(Outline{{{0.1, 0.0}, {0.4, 0.0}, {0.3, 0.6}}, {true, false, true}},
+                              Prism::Swept{Sweep::revolved, 2, 0.0, 1.5}),
+      std::make_shared<Cylinder>(3, Vector{0.1, 0.2, 0.0}, 0.006, 0.0, 0.1)};
+  for (const auto& shape : shapes) {
+    const auto points = shape->surface(0.03);
+    ASSERT_GT(points.size(), 10u);
+    for (const SurfacePoint& p : points) {
+      EXPECT_NEAR(shape->distance(p.place), 0.0, 1e-12);
+      Vector outside = p.place;
+      for (std::size_t a = 0; a < 3; ++a) outside[a] += 1e-5 * p.normal[a];
+      EXPECT_NEAR(shape->distance(outside), 1e-5, 1e-9);
+    }
+  }
+}
+
+TEST(WallFriction, ABlockSlidesAsCoulombSaysWhateverTheWallsAngleToTheGrid) {
+  const double slope = 30.0 * degree, friction = 0.3;
+  const double exact = gravity * (std::sin(slope) - friction * std::cos(slope));
+  for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip})
+    for (const double angle : {0.0, 15.0, 30.0, 45.0, 68.0}) {
+      const double a =
+          sliding_acceleration({2, false, transfer, false}, angle * degree, slope, friction, 0.3);
+      std::printf("    %s, %2.0f degrees to the grid: %.4f of g (sin - mu cos)\n",
+                  name_of({2, false, transfer, false}).c_str(), angle, a / exact);
+      // Measured: quadratic 2e-4, linear 1e-3 to 1e-2.
+      EXPECT_NEAR(a / exact, 1.0, transfer == Transfer::quadratic_apic ? 0.002 : 0.015);
+    }
+  for (const double angle : {0.0, 26.0}) {
+    const double a = sliding_acceleration({3}, angle * degree, slope, friction, 0.2);
+    std::printf("    3D, %2.0f degrees to the grid: %.4f of g (sin - mu cos)\n", angle, a / exact);
+    EXPECT_NEAR(a / exact, 1.0, 0.01);
+  }
+}
+
+TEST(WallFriction, ABlockSticksBelowTheFrictionAngle) {
+  // The friction angle of 0.3 is 16.7 degrees.
+  for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip})
+    for (const double angle : {0.0, 15.0, 45.0}) {
+      const Variant v = {2, false, transfer, false};
+      const double a = sliding_acceleration(v, angle * degree, 14.0 * degree, 0.3, 0.3);
+      std::printf("    %s, %2.0f degrees to the grid: %.4f m/s2\n", name_of(v).c_str(), angle, a);
+      EXPECT_NEAR(a, 0.0, 0.01 * gravity * std::sin(14.0 * degree));
+    }
+}
+
+TEST(WallContact, AColumnInABoxKeepsItsWeightOnTheFloor) {
+  // Walls that the grid does not know of: floor and sides a third of a cell off its lines.
+  SolverSettings s = concrete({2});
+  s.state = {3.3e5, 3.4e4, 7.0};
+  const double floor = 0.2 + s.cell / 3.0, side = 0.2 + s.cell / 3.0, width = 8 * s.cell,
+               height = 12 * s.cell;
+  const Extent extent = {{0.1, 0.1, 0.0}, {0.4, 0.6, 0.0}};
+  const auto add = [&](const Vector& place, const Vector& normal) {
+    s.walls.push_back(
+        {"", std::make_shared<HalfSpace>(2, place, normal, extent), Contact::friction, 0.3, {}});
+  };
+  add({0.0, floor, 0.0}, {0, 1, 0});
+  add({side, 0.0, 0.0}, {1, 0, 0});
+  add({side + width, 0.0, 0.0}, {-1, 0, 0});
+  std::vector<Seed> seeds;
+  const double spacing = s.cell / 3.0;
+  for (int i = 0; i < 24; ++i)
+    for (int k = 0; k < 36; ++k)
+      seeds.push_back(seed_at({side + (i + 0.5) * spacing, floor + (k + 0.5) * spacing, 0.0}, s.cell,
+                              spacing * spacing, 2));
+  auto solver = make_solver(s, seeds);
+  const double weight = s.density * width * height * gravity, step = usual_step(s);
+  Vector mean{}, push{};
+  int counted = 0;
+  for (int i = 0; i * step < 3.0; ++i) {
+    solver->step(step, {0.0, -gravity, 0.0});
+    if (i * step < 2.0) continue;
+    ++counted;
+    for (std::size_t w = 0; w < 3; ++w)
+      for (std::size_t a = 0; a < 2; ++a) mean[a] += solver->wall_force(w)[a];
+    push[0] += solver->wall_force(0)[1];
+    push[1] += solver->wall_force(1)[0];
+  }
+  std::printf("    all walls carry %.5f of the weight, the floor %.5f\n", mean[1] / counted / weight,
+              push[0] / counted / weight);
+  EXPECT_NEAR(mean[1] / counted, weight, 1e-3 * weight);
+  EXPECT_NEAR(mean[0] / counted, 0.0, 1e-3 * weight);
+  // A fluid's push on a side would be half its weight times height over width.
+  EXPECT_NEAR(push[1] / counted, 0.5 * s.density * gravity * height * height, 0.03 * weight);
+  for (const Wall& wall : s.walls) EXPECT_GE(lowest_distance(*solver, wall, 3.0), -1e-12);
+}
+
+TEST(WallContact, NothingPassesASlopeItsSidesAndABarInTwentyThousandSteps) {
+  // A restless fluid on an inclined floor, thrown to and fro between two sides and against a bar.
+  SolverSettings s = concrete({2});
+  s.flow.yield_stress = 5.0;
+  s.flow.plastic_viscosity = 0.5;
+  const Frame f(20.0 * degree, 2);
+  const Extent extent = {{0.0, 0.0, 0.0}, {1.5, 1.2, 0.0}};
+  const auto solid = [](std::shared_ptr<const WallShape> shape) {
+    Wall wall;
+    wall.shape = std::move(shape);
+    wall.contact = Contact::friction;
+    wall.friction = 0.2;
+    return wall;
+  };
+  s.walls.push_back(solid(std::make_shared<HalfSpace>(2, place_on_wall, f.up, extent)));
+  const Vector left = combined(place_on_wall, f, -0.12, 0.0, 0.0),
+               right = combined(place_on_wall, f, 0.12, 0.0, 0.0);
+  s.walls.push_back(solid(std::make_shared<HalfSpace>(2, left, f.along, extent)));
+  s.walls.push_back(
+      solid(std::make_shared<HalfSpace>(2, right, Vector{-f.along[0], -f.along[1], 0.0}, extent)));
+  s.walls.push_back(
+      solid(std::make_shared<Cylinder>(2, combined(place_on_wall, f, 0.06, 0.02, 0.0), 0.006, 0, 0)));
+  auto solver = make_solver(s, block_on_wall(s, f, 6, 6));
+  const double step = usual_step(s);
+  double lowest = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    // The driving force turns round and round.
+    const double turn = 2.0 * std::numbers::pi * i * step / 1.7;
+    solver->step(step, {gravity * std::sin(turn), -gravity * std::abs(std::cos(turn)), 0.0});
+    if (i % 200 != 0) continue;
+    for (const Wall& wall : s.walls) lowest = std::min(lowest, lowest_distance(*solver, wall, 0.0));
+  }
+  std::printf("    deepest in a wall: %.2g m\n", -lowest);
+  EXPECT_GE(lowest, -1e-9);
+}
+
+TEST(WallContact, ALiftedLidLeavesMaterialBehindAndAStickyOnePullsIt) {
+  for (const Contact contact : {Contact::slip, Contact::friction, Contact::stick}) {
+    SolverSettings s = elastic({2});
+    const Frame f(0.0, 2);
+    s.walls = {plane_wall(2, f, Contact::stick, 0.0)};
+    Wall lid;
+    const double top = place_on_wall[1] + 4 * s.cell;
+    lid.shape = std::make_shared<Prism>(
+        Outline{{{0.3, top}, {0.7, top}, {0.7, top + 0.05}, {0.3, top + 0.05}}, {true, false, false, false}},
+        Prism::Swept{});
+    lid.contact = contact;
+    lid.friction = 0.5;
+    lid.motion = {{0.0, 0.15, 0.0}, 0.0, 10.0};
+    s.walls.push_back(lid);
+    auto solver = make_solver(s, block_on_wall(s, f, 8, 4));
+    const double step = usual_step(s);
+    double time = 0.0, pulled = 0.0;
+    for (; time < 0.02; time += step) {
+      solver->set_time(time);
+      solver->step(step, {0.0, -gravity, 0.0});
+      pulled = std::max(pulled, solver->wall_force(1)[1]);
+    }
+    if (contact == Contact::stick) {
+      EXPECT_GT(pulled, 0.0);
+    } else {
+      EXPECT_EQ(pulled, 0.0);
+    }
+    EXPECT_GE(lowest_distance(*solver, lid, time), -1e-9);
+  }
+}
+
+TEST(WallContact, AGateHoldsUntilItOpens) {
+  SolverSettings s = concrete({2});
+  const Frame f(0.0, 2);
+  s.walls = {plane_wall(2, f, Contact::slip, 0.0)};
+  const double face = place_on_wall[0] + 4 * s.cell;
+  Wall gate;
+  gate.shape =
+      std::make_shared<Prism>(Outline{{{face, 0.4}, {face + 0.05, 0.4}, {face + 0.05, 1.0}, {face, 1.0}},
+                                      {false, false, false, true}},
+                              Prism::Swept{});
+  gate.contact = Contact::slip;
+  gate.opens_at = 0.2;
+  s.walls.push_back(gate);
+  s.walls.push_back(gate);
+  s.walls.back().opens_at = std::numeric_limits<double>::infinity();
+  s.walls.back().shape = std::make_shared<HalfSpace>(2, Vector{place_on_wall[0] - 4 * s.cell, 0.0, 0.0},
+                                                     Vector{1, 0, 0}, Extent{{0, 0.2, 0}, {1, 1, 0}});
+  auto solver = make_solver(s, block_on_wall(s, f, 8, 8));
+  const double step = usual_step(s);
+  const auto farthest = [&] {
+    double most = 0.0;
+    solver->visit([&](const ParticleBatch& b) {
+      for (const double x : b.position[0]) most = std::max(most, x);
+    });
+    return most;
+  };
+  double time = 0.0;
+  for (; time + step < 0.2; time += step) {
+    solver->set_time(time);
+    solver->step(step, {0.0, -gravity, 0.0});
+  }
+  EXPECT_LE(farthest(), face + 1e-9);
+  for (; time < 0.4; time += step) {
+    solver->set_time(time);
+    solver->step(step, {0.0, -gravity, 0.0});
+  }
+  EXPECT_GT(farthest(), face + 0.02);
+}
+
+TEST(WallContact, TheSameBitsForAnyNumberOfThreadsAndAfterAResumption) {
+  SolverSettings s = concrete({2});
+  const Frame f(20.0 * degree, 2);
+  s.walls = {plane_wall(2, f, Contact::friction, 0.3)};
+  const auto advance = [&](Solver& solver, int steps) {
+    for (int i = 0; i < steps; ++i) solver.step(usual_step(s), {0.0, -gravity, 0.0});
+  };
+  auto one = make_solver(s, block_on_wall(s, f, 8, 6));
+  s.threads = 2;
+  auto two = make_solver(s, block_on_wall(s, f, 8, 6));
+  advance(*one, 40);
+  auto resumed = make_solver(s, one->state());
+  advance(*one, 40);
+  advance(*two, 80);
+  advance(*resumed, 40);
+  EXPECT_EQ(one->state().arrays, two->state().arrays);
+  EXPECT_EQ(one->state().arrays, resumed->state().arrays);
+}

@@ -1,0 +1,94 @@
+// The papers' scenes on cells so coarse that each takes a second, held to what the solver gave when the full
+// scenes were measured (scenes/README.md): they notice that an answer changes, not that it is right.
+#include <algorithm>
+#include <cmath>
+
+#include "mpm/output/test_runs.h"
+
+using namespace flowrest;
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::test;
+
+namespace {
+
+std::vector<std::string> coarse(const std::vector<std::string>& more) {
+  return with({"mpm.threads=1", "output.snapshot_interval=100", "output.checkpoint_interval=100"}, more);
+}
+
+class PaperScenes : public RunTest {
+ protected:
+  runs::Run made(const std::string& name, const std::vector<std::string>& more) const {
+    return run_and_read(scenes::load_scene(name, {coarse(more), {}}), name);
+  }
+};
+
+double last(const runs::Run& run, const std::string& column) { return run.history.at(column).back(); }
+
+/// Time at which a column first reaches a value, s; -1 where it never does.
+double time_of(const runs::Run& run, const std::string& column, double value, bool upwards) {
+  const auto& series = run.history.at(column);
+  for (std::size_t i = 0; i < series.size(); ++i)
+    if (upwards ? series[i] >= value : series[i] <= value) return run.history.at("time_s")[i];
+  return -1.0;
+}
+
+}  // namespace
+
+TEST_F(PaperScenes, ALiftedMouldLeavesItsConcreteToSpreadAsItRested) {
+  // Reference: 15 mm cells, double precision, AVX-512.
+  const struct {
+    const char* scene;
+    double spread;  // mm
+  } references[] = {{"mix-a-slump-sf0", 525.0}, {"mix-a-slump-sf600", 451.9}};
+  double before = 1e3;
+  for (const auto& reference : references) {
+    const auto run = made(reference.scene, {"mpm.cell=0.015"});
+    const double spread = last(run, "spread_mm");
+    std::printf("    %s: %.1f mm, at rest after %.2f s\n", reference.scene, spread, last(run, "time_s"));
+    EXPECT_EQ(run.status(), runs::Status::at_rest);
+    EXPECT_NEAR(spread, reference.spread, 0.01 * reference.spread);
+    EXPECT_LT(spread, before);
+    before = spread;
+    EXPECT_NEAR(last(run, "volume_at_rest_m3"), run.history.at("volume_at_rest_m3").front(), 1e-12);
+    // Flocs break while it flows and grow again at rest.
+    const auto& lambda = run.history.at("flocculation_mean");
+    if (lambda.front() > 0.0) {
+      const double least = *std::min_element(lambda.begin(), lambda.end());
+      EXPECT_LT(least, 0.9 * lambda.front());
+      EXPECT_GT(lambda.back(), least);
+    }
+  }
+}
+
+TEST_F(PaperScenes, AnLBoxRunsUnderItsFrontWallAndTheStifferMixStopsShorter) {
+  // Without side walls to hold it, the softer mix surges up the end wall and stays there.
+  // Reference: the plane section without bars, 20 mm cells.
+  const auto a = made("mix-a-lbox-sf0", {"geometry.dimension=plane", "mpm.cell=0.02", "time.end=3"});
+  const auto b = made("mix-b-lbox-sf600", {"geometry.dimension=plane", "mpm.cell=0.02", "time.end=3"});
+  const double arrival = time_of(a, "front_mm", 600.0 - 1e-6, true);
+  std::printf("    mix A: arrives after %.2f s, %.1f mm at the end; mix B: %.1f mm\n", arrival,
+              last(a, "end_height_mm"), last(b, "front_mm"));
+  EXPECT_NEAR(arrival, 0.46, 0.1);
+  EXPECT_NEAR(last(a, "end_height_mm"), 77.5, 3.0);
+  EXPECT_NEAR(last(b, "front_mm"), 526.1, 15.0);
+}
+
+TEST_F(PaperScenes, AFunnelRunsEmptyAndLightIsSeenAtTheEnd) {
+  // Reference: the plane section, 16.25 mm cells.
+  const auto run = made("mix-a-vfunnel-sf0", {"geometry.dimension=plane", "mpm.cell=0.01625", "time.end=2"});
+  const double light = time_of(run, "thinnest_sight_mm", 3.0, false);
+  std::printf("    light after %.2f s, %.1f %% discharged at the end\n", light,
+              100.0 * last(run, "discharged_fraction"));
+  EXPECT_NEAR(light, 1.64, 0.05);
+  EXPECT_GT(last(run, "discharged_fraction"), 0.98);
+  const auto& discharged = run.history.at("discharged_fraction");
+  EXPECT_TRUE(std::is_sorted(discharged.begin(), discharged.end()));
+}
+
+TEST_F(PaperScenes, ADamBreaksBetweenSlipWalls) {
+  // Reference: 30 mm cells. The front is slower than Ritter's 2 sqrt(g H), which has no start to overcome.
+  const auto run = made("dam-break", {"mpm.cell=0.03", "time.end=0.3"});
+  std::printf("    front at %.1f mm after 0.3 s\n", last(run, "front_mm"));
+  EXPECT_NEAR(last(run, "front_mm"), 1366.7, 0.02 * 1366.7);
+  EXPECT_LT(last(run, "front_mm"), 600.0 + 1e3 * 2.0 * std::sqrt(9.8 * 0.6) * 0.3);
+}
