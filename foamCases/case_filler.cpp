@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "foamCases/concrete_laws.h"
+#include "foamCases/quarter_grid.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
 #include "scenes/step_limits.h"
@@ -28,6 +30,23 @@ constexpr double for_ever = 1e9;  // s
 
 /// The name by which a case loads the plug-in.
 constexpr const char* plug_in_link = "libflowrestRheology.so";
+
+/// How every sceneParameters begins: what tells a case of ours from another.
+constexpr const char* parameters_begin = "// The scene";
+
+/// Refuses a folder that holds something else than a case of ours.
+void check_ours(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::exists(directory, error) || fs::is_empty(directory, error)) return;
+  std::ifstream file(directory / "sceneParameters");
+  std::string line;
+  if (std::getline(file, line) && line.starts_with(parameters_begin)) return;
+  throw runs::RunError(
+      fmt::format("{}: it is not empty and no case that `flowrest foam` made (it has no sceneParameters of a "
+                  "scene); name a new "
+                  "or an empty folder",
+                  directory.string()));
+}
 
 /// What a user may keep in a case folder beside its sources, and a copy must not take along.
 bool belongs_to_case(const fs::path& name) {
@@ -58,7 +77,29 @@ void check_model(const Scene& scene) {
   }
 }
 
+bool is_quarter(const Scene& scene) {
+  return scene.kind == scenes::Kind::slump && scene.geometry.dimension == scenes::Dimension::quarter;
+}
+
+std::string quarter_mesh_parameters(const Scene& scene) {
+  const auto& cone = scene.slump();
+  const auto grid = quarter_grid(scene);
+  return fmt::format(
+      "// Mesh, m: a quarter of the domain with cells of about {} m.\n"
+      "coneHeight          {};\n"
+      "domainRadius        {};\n"
+      "domainHeight        {};\n"
+      "sideCells           {};\n"
+      "baseHeight          {};  // of a layer of thinner cells, which resolve the sheared base and the toe\n"
+      "baseCells           {};\n"
+      "coneCells           {};\n"
+      "airCells            {};\n",
+      scene.foam.cell, cone.cone_height, cone.domain_radius, cone.domain_height, grid.side,
+      grid.cone_row_height, grid.base_rows, grid.cone_rows, grid.air_rows);
+}
+
 std::string mesh_parameters(const Scene& scene) {
+  if (is_quarter(scene)) return quarter_mesh_parameters(scene);
   const auto& cone = scene.slump();
   const auto grid = wedge_grid(scene);
   const double half_width =
@@ -73,11 +114,13 @@ std::string mesh_parameters(const Scene& scene) {
       "halfWidth           {};  // domainRadius tan(half angle)\n"
       "minusHalfWidth      {};\n"
       "radialCells         {};\n"
+      "baseHeight          {};  // of a layer of thinner cells, which resolve the sheared base and the toe\n"
+      "baseCells           {};\n"
       "coneCells           {};\n"
       "airCells            {};\n",
       scene.foam.wedge_angle, scene.foam.cell, cone.cone_height, cone.cone_radius_bottom, cone.cone_height,
       cone.cone_radius_bottom - cone.cone_radius_top, cone.domain_radius, cone.domain_height, half_width,
-      -half_width, grid.rings, grid.cone_rows, grid.air_rows);
+      -half_width, grid.rings, grid.cone_row_height, grid.base_rows, grid.cone_rows, grid.air_rows);
 }
 
 std::string time_parameters(const Scene& scene) {
@@ -149,13 +192,37 @@ std::string duct_parameters(const Scene& scene) {
              wall(scene), body_forces(scene));
 }
 
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 void write_text(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;
   if (!file) throw runs::RunError(fmt::format("{}: cannot be written", path.string()));
 }
 
+/// Puts the cone into a quarter's initial field: no utility of OpenFOAM cuts cells by a cone.
+void write_initial_fraction(const Scene& scene, const fs::path& path) {
+  std::string text = text_of(path);
+  const auto begin = text.find("internalField"), end = text.find(';', begin);
+  if (begin == std::string::npos || end == std::string::npos)
+    throw runs::RunError(fmt::format("{}: it has no internalField to put the cone into", path.string()));
+  write_text(path, text.replace(begin, end - begin, initial_fraction(scene)));
+}
+
 }  // namespace
+
+std::string initial_fraction(const Scene& scene) {
+  const auto grid = quarter_grid(scene);
+  const auto fraction = cone_fraction(scene, grid);
+  std::string text = fmt::format("internalField   nonuniform List<scalar>\n{}\n(\n", grid.cells());
+  for (std::size_t cell = 0; cell < fraction.size(); ++cell)
+    text +=
+        fmt::format("{}{}", fraction[cell], (cell + 1) % static_cast<std::size_t>(grid.side) ? " " : "\n");
+  return text + ")";
+}
 
 void check_supported(const Scene& scene) {
   check_model(scene);
@@ -163,10 +230,17 @@ void check_supported(const Scene& scene) {
     duct_cells(scene);
     return;
   }
-  if (scene.geometry.dimension != scenes::Dimension::axisymmetric)
-    refuse(scene, fmt::format("geometry.dimension {}: the slump case is a wedge; allowed: axisymmetric",
-                              scenes::to_string(scene.geometry.dimension)));
-  wedge_grid(scene);
+  if (scene.geometry.dimension != scenes::Dimension::axisymmetric && !is_quarter(scene))
+    refuse(
+        scene,
+        fmt::format("geometry.dimension {}: there is a slump case as a wedge and one as a quarter; allowed: "
+                    "axisymmetric, quarter",
+                    scenes::to_string(scene.geometry.dimension)));
+  mesh_cells(scene);
+}
+
+std::string case_name(const Scene& scene) {
+  return scenes::to_string(scene.kind) + (is_quarter(scene) ? "-quarter" : "");
 }
 
 std::size_t duct_cells(const Scene& scene) {
@@ -175,6 +249,11 @@ std::size_t duct_cells(const Scene& scene) {
     refuse(scene, fmt::format("foam.cell = {:g} m lays {:.3g} cells between the plates; allowed: 1 to {:g}",
                               scene.foam.cell, cells, most_duct_cells));
   return static_cast<std::size_t>(std::lround(cells));
+}
+
+std::size_t mesh_cells(const Scene& scene) {
+  if (scene.kind == scenes::Kind::duct) return duct_cells(scene);
+  return is_quarter(scene) ? quarter_grid(scene).cells() : wedge_grid(scene).cells();
 }
 
 fs::path cases_folder() {
@@ -187,19 +266,26 @@ double sample_interval(const Scene& scene) {
   return std::min(scene.output.history_interval, scene.output.profile_interval);
 }
 
-std::string scene_parameters(const Scene& scene, bool plug_in) {
+std::string scene_parameters(const Scene& scene, bool plug_in, int ranks) {
   return fmt::format(
-             "// The scene '{}' in numbers: the only file of this case that `flowrest foam` writes. Every "
+             "{} '{}' in numbers: the only file of this case that `flowrest foam` writes. Every "
              "dictionary\n"
              "// includes it. SI units; stresses and viscosities of the transport models are over the "
              "density.\n\n",
-             scene.name) +
+             parameters_begin, scene.name) +
          (scene.kind == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene)) +
-         phase_parameters(scene) + concrete_laws(scene, plug_in);
+         phase_parameters(scene) + concrete_laws(scene, plug_in) +
+         fmt::format("\n// Parts into which decomposePar cuts the case.\nranks               {};\n", ranks);
 }
 
-void fill_case(const Scene& scene, const fs::path& directory, const std::optional<fs::path>& plug_in) {
-  const fs::path source = cases_folder() / scenes::to_string(scene.kind);
+void fill_parameters(const Scene& scene, const fs::path& directory, bool plug_in, int ranks) {
+  write_text(directory / "sceneParameters", scene_parameters(scene, plug_in, ranks));
+}
+
+void fill_case(const Scene& scene, const fs::path& directory, const std::optional<fs::path>& plug_in,
+               int ranks) {
+  check_ours(directory);
+  const fs::path source = cases_folder() / case_name(scene);
   std::error_code error;
   if (!fs::is_directory(source / "system", error))
     throw runs::RunError(
@@ -213,13 +299,15 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
         fs::copy(entry.path(), directory / entry.path().filename(),
                  fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     fs::remove_all(directory / "constant" / "polyMesh");
+    if (is_quarter(scene)) write_initial_fraction(scene, directory / "0.orig" / "alpha.concrete");
+    fs::remove_all(directory / "0");
     fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
     fs::remove(directory / plug_in_link);
     if (plug_in) fs::create_symlink(*plug_in, directory / plug_in_link);
   } catch (const fs::filesystem_error& fault) {
     throw runs::RunError(fmt::format("{}: the case cannot be copied: {}", directory.string(), fault.what()));
   }
-  write_text(directory / "sceneParameters", scene_parameters(scene, plug_in.has_value()));
+  fill_parameters(scene, directory, plug_in.has_value(), ranks);
   write_text(directory / "case.foam", "");
 }
 

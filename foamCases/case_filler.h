@@ -20,16 +20,29 @@ std::filesystem::path cases_folder();
 /// Cells of a duct from plate to plate: foam.cell fitted to its height.
 std::size_t duct_cells(const scenes::Scene&);
 
+/// The folder of the scene's case among the cases: its kind, and slump-quarter.
+std::string case_name(const scenes::Scene&);
+
+/// A quarter's initial fraction as the entry internalField, a line to a row of cells.
+std::string initial_fraction(const scenes::Scene&);
+
+/// Cells of the scene's mesh.
+std::size_t mesh_cells(const scenes::Scene&);
+
 /// Simulated seconds between the samples interFoam writes for the gauges.
 double sample_interval(const scenes::Scene&);
 
 /// The text of sceneParameters, with the laws of the plug-in or OpenFOAM's own.
-std::string scene_parameters(const scenes::Scene&, bool plug_in);
+std::string scene_parameters(const scenes::Scene&, bool plug_in, int ranks = 1);
+
+/// Writes sceneParameters of a case that is there already.
+void fill_parameters(const scenes::Scene&, const std::filesystem::path& directory, bool plug_in, int ranks);
 
 /// Copies the scene's case into `directory`, with its sceneParameters and its initial fields in 0/, and a
 /// link to the plug-in (its path) where it takes that.
-/// @throws runs::RunError where the case cannot be found or copied.
+/// @throws runs::RunError where the case cannot be found or copied, or `directory` holds what `flowrest foam`
+/// did not put there.
 void fill_case(const scenes::Scene&, const std::filesystem::path& directory,
-               const std::optional<std::filesystem::path>& plug_in);
+               const std::optional<std::filesystem::path>& plug_in, int ranks = 1);
 
 }  // namespace flowrest::foam

@@ -51,6 +51,23 @@ TEST(CaseFiller, TheCommittedCaseIsTheRousselSlump) {
       << "foamCases/slump/sceneParameters is what `flowrest foam roussel-slump --model papanastasiou` writes";
 }
 
+/// Small enough to read, and to run while one waits.
+scenes::Scene committed_quarter() {
+  return roussel_slump("papanastasiou",
+                       {"geometry.dimension=quarter", "foam.cell=0.03", "foam.laws=built-in"});
+}
+
+TEST(CaseFiller, TheCommittedQuarterIsTheRousselSlumpOnCoarseCells) {
+  EXPECT_EQ(text_of(cases_folder() / "slump-quarter" / "sceneParameters"),
+            scene_parameters(committed_quarter(), false))
+      << "foamCases/slump-quarter/sceneParameters is what `flowrest foam roussel-slump --model papanastasiou "
+         "--set "
+         "geometry.dimension=quarter --set foam.cell=0.03 --set foam.laws=built-in` writes";
+  EXPECT_THAT(text_of(cases_folder() / "slump-quarter" / "0.orig" / "alpha.concrete"),
+              HasSubstr(initial_fraction(committed_quarter()) + ";"))
+      << "and so is 0.orig/alpha.concrete";
+}
+
 TEST(CaseFiller, TheCommittedDuctIsTheStepDown) {
   EXPECT_EQ(
       text_of(cases_folder() / "duct" / "sceneParameters"),
@@ -81,7 +98,9 @@ TEST(CaseFiller, TakesEveryNumberFromTheScene) {
   EXPECT_EQ(number("coneRadiusBottom"), 0.12);
   EXPECT_EQ(number("sampleInterval"), 0.25);  // of the profiles, which come oftener here
   EXPECT_EQ(number("snapshotInterval"), 2.0);
-  EXPECT_EQ(number("coneCells"), 15.0);
+  EXPECT_EQ(number("coneCells"), 14.0);
+  EXPECT_EQ(number("baseCells"), 1.0);
+  EXPECT_DOUBLE_EQ(number("baseHeight"), 0.02);
   EXPECT_DOUBLE_EQ(number("halfWidth"), 0.45 * std::tan(std::acos(-1.0) / 72.0));
   EXPECT_DOUBLE_EQ(number("minusHalfWidth"), -number("halfWidth"));
 }
@@ -101,7 +120,9 @@ TEST(CaseFiller, TheStepNeverPassesASampleAndObeysTheScene) {
 
 TEST(CaseFiller, RefusesWhatTheCaseCannotRun) {
   EXPECT_EQ(refusal("elasto-viscoplastic", {}), "accepted");
-  EXPECT_THAT(refusal("papanastasiou", {"geometry.dimension=quarter"}), HasSubstr("allowed: axisymmetric"));
+  EXPECT_THAT(refusal("papanastasiou", {"geometry.dimension=plane"}),
+              HasSubstr("allowed: axisymmetric, quarter"));
+  EXPECT_EQ(refusal("papanastasiou", {"geometry.dimension=quarter"}), "accepted");
   EXPECT_THAT(refusal("papanastasiou", {"geometry.domain_height=0.301"}), HasSubstr("at least 0.31 m"));
   EXPECT_THAT(refusal("papanastasiou", {"foam.cell=0.0001"}), HasSubstr("at most 5e+06 are allowed"));
   EXPECT_EQ(refusal("bi-viscous", {}), "accepted");
@@ -169,6 +190,22 @@ TEST(CaseFiller, CopiesTheCaseAndNothingARunLeftInIt) {
     EXPECT_TRUE(fs::exists(filled / part)) << part;
   EXPECT_FALSE(fs::exists(filled / "12.5"));
   EXPECT_FALSE(fs::exists(filled / "constant" / "polyMesh"));
+}
+
+TEST(CaseFiller, AFolderThatItDidNotMakeIsLeftAlone) {
+  const TemporaryFolder target;
+  std::ofstream(target.path() / "mine") << "work of years";
+  try {
+    fill_case(roussel_slump("papanastasiou"), target.path(), std::nullopt);
+    FAIL() << "it wrote over another folder";
+  } catch (const runs::RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no case that `flowrest foam` made"));
+  }
+  EXPECT_FALSE(fs::exists(target.path() / "system"));
+  EXPECT_EQ(text_of(target.path() / "mine"), "work of years");
+  // Its own it fills again.
+  fill_case(roussel_slump("papanastasiou"), target.path() / "case", std::nullopt);
+  EXPECT_NO_THROW(fill_case(roussel_slump("bi-viscous"), target.path() / "case", std::nullopt));
 }
 
 TEST(CaseFiller, SaysWhereItLookedForACase) {

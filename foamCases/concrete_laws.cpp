@@ -106,6 +106,16 @@ std::string plug_in_stress(const Scene& scene) {
       material.youngs_modulus, indent, material.poisson_ratio, common_coefficients(scene, indent));
 }
 
+/// What is done to the concrete after every step.
+std::string air_rises(const Scene& scene, bool plug_in) {
+  if (!plug_in || !(scene.foam.air_rise_time.value_or(0.0) > 0.0) || scene.kind != scenes::Kind::slump)
+    return "afterEveryStep\n{\n}\n";
+  return fmt::format(
+      "afterEveryStep\n{{\n    airRises\n    {{\n        type            airRises;\n        libs            "
+      "$rheologyLibraries;\n        time            {};  // s\n    }}\n}}\n",
+      *scene.foam.air_rise_time);
+}
+
 std::string stress_model(const Scene& scene, bool plug_in) {
   const std::string none = "\nconcreteStress\n{\n}\n";
   if (!plug_in) return built_in_viscosity(scene.material) + none;
@@ -128,8 +138,9 @@ std::string concrete_laws(const Scene& scene, bool plug_in) {
              "state.\n"
              "rheologyLibraries   ({});\n"
              "historyObjects      (alpha.concrete U{});\n"
-             "stateObjects        (alpha.concrete U p_rgh phi{}{});\n\n",
-             plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state) +
+             "stateObjects        (alpha.concrete U p_rgh phi{}{});\n{}\n",
+             plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state,
+             air_rises(scene, plug_in)) +
          stress_model(scene, plug_in);
 }
 

@@ -2,40 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "foamCases/case_filler.h"
-#include "foamCases/field_file.h"
 
 namespace flowrest::foam {
 
-namespace fs = std::filesystem;
-
-DuctSampler::DuctSampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
-    : Sampler(scene, std::move(case_directory), writer), height_(duct_cells(scene)) {
+DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
+    : Sampler(scene, std::move(fields), writer), height_(duct_cells(scene)) {
   for (std::size_t i = 0; i < height_.size(); ++i)
     height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
-  std::vector<std::string> columns{"time_s", "plug_velocity_m_s", "mean_velocity_m_s", "initial_residual_U",
-                                   "time_step_s"};
+  std::vector<std::string> columns{
+      "time_s", "plug_velocity_m_s", "mean_velocity_m_s", "initial_residual_U", "courant_max", "time_step_s"};
   if (scene.thixotropy) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
 
-void DuctSampler::sample(double time, const fs::path& directory) {
-  const auto field = read_internal_field(directory / "U", cells(), 3);
+void DuctSampler::sample(double time, const ReadField& read) {
+  const auto field = read("U", 3);
   std::vector<double> velocity(cells());
   for (std::size_t i = 0; i < cells(); ++i) velocity[i] = field[3 * i];
+  const double spacing = scene().duct().height / static_cast<double>(cells());
+  shear_rate_ = 0.0;
+  if (scene().base.law != scenes::Wall::slip)
+    shear_rate_ = std::max(std::abs(velocity.front()), std::abs(velocity.back())) / (0.5 * spacing);
+  for (std::size_t i = 1; i < cells(); ++i)
+    shear_rate_ = std::max(shear_rate_, std::abs(velocity[i] - velocity[i - 1]) / spacing);
   const std::size_t middle = cells() / 2;
   plug_velocity_ = cells() < 2 ? velocity.front() : 0.5 * (velocity[middle - 1] + velocity[middle]);
   mean_velocity_ = std::accumulate(velocity.begin(), velocity.end(), 0.0) / static_cast<double>(cells());
   if (history_is_due(time)) {
     const SolverStep steps = since_last_row(time);
-    std::vector<double> row{time, plug_velocity_, mean_velocity_, steps.initial_residual_u, steps.time_step};
+    std::vector<double> row{time,          plug_velocity_, mean_velocity_, steps.initial_residual_u,
+                            steps.courant, steps.time_step};
     if (scene().thixotropy) {
       const auto flocculation = time > 0.0
-                                    ? read_internal_field(directory / "flocculation", cells(), 1)
+                                    ? read("flocculation", 1)
                                     : std::vector<double>(cells(), scene().thixotropy->initial_flocculation);
       row.push_back(std::accumulate(flocculation.begin(), flocculation.end(), 0.0) /
                     static_cast<double>(cells()));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "foamCases/sampler.h"
@@ -10,19 +9,21 @@ namespace flowrest::foam {
 /// Gauges a duct: the velocity profile of its one column of cells.
 class DuctSampler : public Sampler {
  public:
-  DuctSampler(const scenes::Scene&, std::filesystem::path case_directory, runs::RunWriter&);
+  DuctSampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
 
   std::size_t cells() const override { return height_.size(); }
   std::string progress() const override;
+  double shear_rate() const override { return shear_rate_; }
   std::string fault() const override { return ""; }
   nlohmann::ordered_json summary() const override;
 
  private:
-  void sample(double time, const std::filesystem::path& directory) override;
+  void sample(double time, const ReadField&) override;
 
   std::vector<double> height_;  ///< m, of the cell centres over the lower plate
   double plug_velocity_ = 0.0;  ///< m/s, the mean of the innermost two cells
   double mean_velocity_ = 0.0;  ///< m/s
+  double shear_rate_ = 0.0;     ///< 1/s, the largest, at the plates or between cells
 };
 
 }  // namespace flowrest::foam

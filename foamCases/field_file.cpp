@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -50,13 +51,27 @@ class Reader {
     ++at_;
   }
 
-  /// The doubles that follow directly, as the machine holds them.
-  std::vector<double> raw(std::size_t count) {
-    if (text_.size() - at_ < count * sizeof(double)) fail("it ends too early");
-    std::vector<double> values(count);
-    std::memcpy(values.data(), text_.data() + at_, count * sizeof(double));
-    at_ += count * sizeof(double);
+  /// The numbers that follow directly, as the machine holds them.
+  template <class Number>
+  std::vector<Number> raw(std::size_t count) {
+    if ((text_.size() - at_) / sizeof(Number) < count) fail("it ends too early");
+    std::vector<Number> values(count);
+    std::memcpy(values.data(), text_.data() + at_, count * sizeof(Number));
+    at_ += count * sizeof(Number);
     return values;
+  }
+
+  bool at(char c) {
+    skip_blanks();
+    return at_ < text_.size() && text_[at_] == c;
+  }
+
+  void skip_comments() {
+    while (at('/')) {
+      const auto end = text_.find('\n', at_);
+      if (end == std::string_view::npos) fail("it ends too early");
+      at_ = end + 1;
+    }
   }
 
   /// One value: bare where it is a scalar, in brackets where it is a vector.
@@ -75,6 +90,12 @@ class Reader {
   const std::string& name_;
   std::size_t at_ = 0;
 };
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FieldError(fmt::format("{}: cannot be read", path.string()));
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
 
 bool says_binary(std::string_view text) {
   const auto format = text.find("format");
@@ -106,7 +127,7 @@ std::vector<double> parse_internal_field(const std::string& bytes, const std::st
     reader.fail(fmt::format("it holds {} cells, the mesh has {}", written, cells));
   reader.expect('(');
   if (says_binary(bytes)) {
-    values = reader.raw(count);
+    values = reader.raw<double>(count);
   } else {
     values.reserve(count);
     for (std::size_t cell = 0; cell < cells; ++cell) reader.value(components, values);
@@ -115,12 +136,31 @@ std::vector<double> parse_internal_field(const std::string& bytes, const std::st
   return values;
 }
 
+std::vector<int> read_labels(const std::filesystem::path& path) {
+  const std::string bytes = bytes_of(path);
+  const std::string name = path.string();
+  Reader reader(bytes, name);
+  reader.skip_past("FoamFile");
+  reader.skip_past("}");
+  reader.skip_comments();
+  const double count = reader.number();
+  if (!(count >= 0.0 && count <= 1e9)) reader.fail(fmt::format("it cannot hold {} labels", count));
+  std::vector<int> labels;
+  reader.expect('(');
+  if (says_binary(bytes)) {
+    for (const auto label : reader.raw<std::int32_t>(static_cast<std::size_t>(count)))
+      labels.push_back(label);
+  } else {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      labels.push_back(static_cast<int>(reader.number()));
+  }
+  reader.expect(')');
+  return labels;
+}
+
 std::vector<double> read_internal_field(const std::filesystem::path& path, std::size_t cells,
                                         int components) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FieldError(fmt::format("{}: cannot be read", path.string()));
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return parse_internal_field(bytes, path.string(), cells, components);
+  return parse_internal_field(bytes_of(path), path.string(), cells, components);
 }
 
 }  // namespace flowrest::foam

@@ -23,4 +23,8 @@ std::vector<double> read_internal_field(const std::filesystem::path&, std::size_
 std::vector<double> parse_internal_field(const std::string& bytes, const std::string& name, std::size_t cells,
                                          int components);
 
+/// A list of labels, such as which cells of the whole mesh a part holds.
+/// @throws FieldError where it is none, or not whole.
+std::vector<int> read_labels(const std::filesystem::path&);
+
 }  // namespace flowrest::foam

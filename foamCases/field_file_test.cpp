@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
+
+#include "foamCases/test_scene.h"
 
 namespace flowrest::foam {
 namespace {
@@ -22,6 +26,24 @@ std::string bytes_of(const std::vector<double>& values) {
   std::string bytes(values.size() * sizeof(double), '\0');
   std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
+}
+
+TEST(FieldFile, ReadsLabelsInTextAndAsBytes) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder.path() / "cellProcAddressing";
+  const std::string head =
+      "/* banner */\nFoamFile\n{\n    format      FORMAT;\n    class labelList;\n}\n// * * //\n\n\n3\n(";
+  auto text = head;
+  std::ofstream(path) << text.replace(text.find("FORMAT"), 6, "ascii") << "4\n0\n7\n)\n";
+  EXPECT_EQ(read_labels(path), (std::vector<int>{4, 0, 7}));
+  auto bytes = head;
+  bytes.replace(bytes.find("FORMAT"), 6, "binary");
+  for (const std::int32_t label : {5, -1, 70000})
+    bytes.append(reinterpret_cast<const char*>(&label), sizeof label);
+  std::ofstream(path, std::ios::binary) << bytes << ")";
+  EXPECT_EQ(read_labels(path), (std::vector<int>{5, -1, 70000}));
+  std::ofstream(path, std::ios::binary) << bytes.substr(0, bytes.size() - 2);
+  EXPECT_THROW(read_labels(path), FieldError);
 }
 
 TEST(FieldFile, ReadsUniformFields) {

@@ -12,10 +12,13 @@
 #include <memory>
 #include <vector>
 
+#include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/duct_sampler.h"
 #include "foamCases/field_file.h"
 #include "foamCases/plug_in.h"
+#include "foamCases/rest_monitor.h"
+#include "foamCases/run_state.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
 #include "runs/process.h"
@@ -27,6 +30,7 @@ namespace flowrest::foam {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using runs::Status;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -35,10 +39,18 @@ constexpr double poll_interval = 0.05;  // s
 constexpr double collapsed_step = 1e-5;
 constexpr int collapsed_steps = 20;
 
-/// What makes a case's mesh and initial fields, in order, and what solves it.
+/// A program and what it is called with.
+struct Call {
+  fs::path program;
+  std::vector<std::string> arguments;
+};
+
+/// What makes a case's mesh and initial fields, in order, what cuts it up and puts it together, and what
+/// solves it.
 struct Programs {
-  std::vector<fs::path> prepare;
-  fs::path inter_foam;
+  std::vector<Call> prepare;
+  std::optional<Call> decompose, reconstruct;  ///< of a parallel run
+  Call solve;
 };
 
 fs::path needed_program(const std::string& name) {
@@ -61,45 +73,86 @@ void refuse_what_no_case_has(const scenes::Scene& scene) {
   if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity) refuse("mould that is lifted");
 }
 
-Programs needed_programs(const scenes::Scene& scene) {
-  if (scene.kind == scenes::Kind::duct) return {{needed_program("blockMesh")}, needed_program("interFoam")};
-  return {{needed_program("blockMesh"), needed_program("setAlphaField"), needed_program("setFields")},
-          needed_program("interFoam")};
+Programs needed_programs(const scenes::Scene& scene, int ranks) {
+  Programs programs;
+  programs.prepare.push_back({needed_program("blockMesh"), {}});
+  if (scene.kind == scenes::Kind::slump && scene.geometry.dimension != scenes::Dimension::quarter) {
+    programs.prepare.push_back({needed_program("setAlphaField"), {}});
+    programs.prepare.push_back({needed_program("setFields"), {}});
+  }
+  programs.solve = {needed_program("interFoam"), {}};
+  if (ranks <= 1) return programs;
+  programs.decompose = Call{needed_program("decomposePar"), {"-force", "-latestTime"}};
+  programs.reconstruct = Call{needed_program("reconstructPar"), {"-newTimes"}};
+  // More ranks than cores must not spin against each other.
+  programs.solve = {needed_program("mpirun"),
+                    {"--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-np",
+                     std::to_string(ranks), programs.solve.program.string(), "-parallel"}};
+  return programs;
 }
 
-std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const fs::path& case_directory,
+std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
                                       runs::RunWriter& writer) {
-  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, case_directory, writer);
-  return std::make_unique<SlumpSampler>(scene, case_directory, writer);
+  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer);
+  return std::make_unique<SlumpSampler>(scene, fields, writer);
 }
 
-/// Debian's OpenFOAM needs to be told where its etc folder is, and nothing else.
+/// Debian's OpenFOAM needs to be told where its etc folder is, and nothing else; Open MPI that root may use
+/// it.
 std::map<std::string, std::string> openfoam_environment() {
   static const char* folder = "/usr/share/openfoam";
-  if (std::getenv("WM_PROJECT_DIR") != nullptr || !fs::exists(fs::path(folder) / "etc")) return {};
-  return {{"WM_PROJECT_DIR", folder}};
+  std::map<std::string, std::string> environment{{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+                                                 {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"}};
+  if (std::getenv("WM_PROJECT_DIR") == nullptr && fs::exists(fs::path(folder) / "etc"))
+    environment["WM_PROJECT_DIR"] = folder;
+  return environment;
 }
 
-/// One run from the filled case to the summary.
+/// Components of the velocity that a case solves for: those whose residuals tell of noise.
+std::string components(const scenes::Scene& scene) {
+  return scene.geometry.dimension == scenes::Dimension::quarter ? "xyz" : "xz";
+}
+
+/// How the steps are bounded, in words.
+std::string step_rule(const scenes::Scene& scene) {
+  const char* bound = "cell^2 density / plastic viscosity";
+  if (scene.foam.max_time_step) {
+    bound = "foam.max_time_step";
+  } else if (scene.material.model == scenes::Model::elasto_viscoplastic) {
+    bound = "1.5 cells at the speed of shear waves";
+  }
+  return fmt::format("Courant number at most {:g}, step at most {:.4g} s ({})", scene.foam.max_courant,
+                     scenes::largest_foam_step(scene), bound);
+}
+
+void remove_parts(const fs::path& case_directory) {
+  for (int rank = CaseFields::ranks_in(case_directory); rank-- > 0;)
+    fs::remove_all(case_directory / fmt::format("processor{}", rank));
+}
+
+/// One run from the filled case, or from the state it is gone on from, to the summary.
 class CaseRun {
  public:
-  CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs)
+  CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs,
+          const std::optional<RunState>& state = std::nullopt)
       : scene_(scene),
         options_(options),
         programs_(std::move(programs)),
-        writer_(options.directory, scene, "foam"),
+        state_(state),
+        writer_(state ? runs::RunWriter::resume(options.directory, scene, state->time)
+                      : runs::RunWriter(options.directory, scene, "foam")),
         case_(options.directory / "case"),
         plug_in_(plug_in_for(scene)),
+        rest_(scene),
         progress_(fmt::format("foam {}", scenes::to_string(scene.material.model)), scene.time.end,
                   options.quiet) {}
 
   RunOutcome run() {
     const runs::InterruptGuard guard;
     try {
-      fill_case(scene_, case_, plug_in_);
-      sampler_ = make_sampler(scene_, case_, writer_);
-      writer_.info()["cells"] = sampler_->cells();
+      begin();
       if (prepare()) solve();
+      put_together();
     } catch (const std::exception& fault) {
       fail(fault.what());
     }
@@ -121,22 +174,59 @@ class CaseRun {
     reason_ = reason;
   }
 
-  /// Mesh and initial fields. False where it went wrong or was interrupted.
-  bool prepare() {
-    return std::all_of(programs_.prepare.begin(), programs_.prepare.end(),
-                       [&](const fs::path& program) { return run_to_end(program); });
+  void begin() {
+    if (!state_) fill_case(scene_, case_, plug_in_, options_.ranks);
+    sampler_ = make_sampler(scene_, CaseFields(case_, options_.ranks), writer_);
+    if (state_) go_on();
+    auto& info = writer_.info();
+    info["cells"] = sampler_->cells();
+    info["ranks"] = options_.ranks;
+    info["resolved_toml"] = scenes::resolved_toml(scene_);
+    writer_.write();
   }
 
-  bool run_to_end(const fs::path& program) {
-    const std::string name = program.filename().string();
+  /// Counts what the run has behind it as if it had just been followed.
+  void go_on() {
+    if (const fs::path history = options_.directory / "history.csv"; fs::exists(history))
+      sampler_->continue_from(runs::read_csv(history));
+    for (const auto& step : state_->steps) tally(step);
+    cpu_by_program_ = state_->cpu_by_program;
+    wall_before_ = state_->wall;
+  }
+
+  /// Mesh and initial fields, and their parts. False where it went wrong or was interrupted.
+  bool prepare() {
+    const auto done = [&](const Call& call) { return run_to_end(call); };
+    if (!state_ && !std::all_of(programs_.prepare.begin(), programs_.prepare.end(), done)) return false;
+    return !programs_.decompose || done(*programs_.decompose);
+  }
+
+  /// One case again, whatever became of the run; where that fails the parts stay.
+  void put_together() {
+    if (!programs_.reconstruct || !fs::exists(case_ / "processor0")) return;
+    const fs::path log_path = case_ / "log.reconstructPar";
+    runs::Process process(programs_.reconstruct->program, programs_.reconstruct->arguments, case_, log_path,
+                          openfoam_environment());
+    while (!process.wait(poll_interval)) {
+    }
+    cpu_by_program_["reconstructPar"] += process.poll()->cpu_s;
+    if (process.poll()->good()) {
+      remove_parts(case_);
+    } else if (status_ != Status::failed) {
+      fail(fmt::format("reconstructPar ended with {}", process.poll()->how()));
+    }
+  }
+
+  bool run_to_end(const Call& call) {
+    const std::string name = call.program.filename().string();
     const fs::path log_path = case_ / ("log." + name);
-    runs::Process process(program, {}, case_, log_path, openfoam_environment());
+    runs::Process process(call.program, call.arguments, case_, log_path, openfoam_environment());
     while (!process.wait(poll_interval))
       if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
         return false;
       }
-    cpu_by_program_[name] = process.poll()->cpu_s;
+    cpu_by_program_[name] += process.poll()->cpu_s;
     if (process.poll()->good()) return true;
     SolverLog log;
     log.feed(FileTail(log_path).read());
@@ -148,7 +238,8 @@ class CaseRun {
   void solve() {
     sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
     const fs::path log_path = case_ / "log.interFoam";
-    runs::Process solver(programs_.inter_foam, {}, case_, log_path, openfoam_environment());
+    runs::Process solver(programs_.solve.program, programs_.solve.arguments, case_, log_path,
+                         openfoam_environment());
     FileTail tail(log_path);
     bool running = true;
     while (running) {
@@ -158,7 +249,7 @@ class CaseRun {
       if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
         stop(solver);
-      } else if (status_ == Status::failed) {
+      } else if (status_ == Status::failed || status_ == Status::at_rest) {
         stop(solver);
       } else {
         continue;
@@ -187,14 +278,18 @@ class CaseRun {
 
   void count(const SolverStep& step) {
     sampler_->note(step);
-    monitor_.add(step);
-    ++steps_;
-    max_courant_ = std::max(max_courant_, step.courant);
-    max_time_step_ = std::max(max_time_step_, step.time_step);
+    tally(step);
     small_steps_ = step.time_step < collapsed_step * scenes::largest_foam_step(scene_) ? small_steps_ + 1 : 0;
     if (small_steps_ == collapsed_steps)
       fail(fmt::format("the time step collapsed to {:.2g} s at {:.4g} s: the flow diverges", step.time_step,
                        step.time));
+  }
+
+  void tally(const SolverStep& step) {
+    monitor_.add(step);
+    ++steps_;
+    max_courant_ = std::max(max_courant_, step.courant);
+    max_time_step_ = std::max(max_time_step_, step.time_step);
   }
 
   /// Ends a run that can give no answer any more.
@@ -202,6 +297,10 @@ class CaseRun {
     if (const auto fault = log_.fault(); !fault.empty())
       fail(fmt::format("interFoam at {:.4g} s: {}", log_.time_begun().value_or(0.0), fault));
     if (const auto fault = sampler_->fault(); !fault.empty()) fail(fault);
+    if (sampler_->time() > 0.0 && status_ == Status::running) {
+      rest_.add(sampler_->time(), sampler_->shear_rate());
+      if (rest_.at_rest()) status_ = Status::at_rest;
+    }
   }
 
   /// Asks the solver to end its step and write; insists where it does not, or where the user asks again.
@@ -219,7 +318,7 @@ class CaseRun {
   }
 
   void conclude(const runs::ProcessEnd& end) {
-    cpu_by_program_["interFoam"] = end.cpu_s;
+    cpu_by_program_["interFoam"] += end.cpu_s;
     if (status_ != Status::running) return;
     if (!end.good()) {
       fail(fmt::format("interFoam ended with {}", end.how()));
@@ -232,9 +331,10 @@ class CaseRun {
 
   void summarise() {
     monitor_.finish();
-    const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double wall = wall_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     if (status_ == Status::interrupted && reason_.empty())
-      reason_ = fmt::format("interrupted at {:.4g} s", time());
+      reason_ = fmt::format("interrupted at {:.4g} s; go on with: flowrest foam --resume {}", time(),
+                            options_.directory.string());
     write_info(wall);
     writer_.finish(status_, reason_, monitor_.verdict());
     progress_.finish(
@@ -247,11 +347,10 @@ class CaseRun {
 
   void write_info(double wall) {
     auto& info = writer_.info();
-    double cpu = runs::cpu_seconds() - own_cpu_before_;
-    cpu_by_program_["flowrest"] = cpu;
-    for (const auto& [program, seconds] : cpu_by_program_)
-      if (program != "flowrest") cpu += seconds;
-    info["openfoam"] = log_.build();
+    cpu_by_program_["flowrest"] += runs::cpu_seconds() - own_cpu_before_;
+    double cpu = 0.0;
+    for (const auto& [program, seconds] : cpu_by_program_) cpu += seconds;
+    if (!log_.build().empty()) info["openfoam"] = log_.build();
     info["laws"] = plug_in_ ? "plug-in" : "built-in";
     info["time_reached_s"] = time();
     info["steps"] = steps_;
@@ -259,10 +358,15 @@ class CaseRun {
     info["cpu_s"] = cpu;
     info["cpu_by_program_s"] = cpu_by_program_;
     info["cell_steps_per_cpu_s"] = static_cast<double>(steps_ * cells()) / cpu;
-    info["rest_time_s"] = nullptr;  // a fluid is never at rest
+    info["cpu_s_per_simulated_s"] = time() > 0.0 ? Json(cpu / time()) : Json();
+    const auto growth = rest_.growth_to_come();
+    info["growth_to_come"] = growth ? Json(*growth) : Json();
+    const auto rest_time = rest_.rest_time();
+    info["rest_time_s"] = rest_time ? Json(*rest_time) : Json();  // a fluid has none
     info.update(gauges());
     info["courant_max"] = max_courant_;
     info["time_step_max_s"] = max_time_step_;
+    info["time_step_rule"] = step_rule(scene_);
     info["noise"] = {{"measure", "initial residual of U, median of blocks of steps"},
                      {"block_steps", NoiseMonitor::block_steps},
                      {"bound", NoiseMonitor::bound},
@@ -273,12 +377,14 @@ class CaseRun {
   const scenes::Scene& scene_;
   const RunOptions& options_;
   Programs programs_;
+  std::optional<RunState> state_;
   runs::RunWriter writer_;
   fs::path case_;
   std::optional<fs::path> plug_in_;
+  RestMonitor rest_;
   runs::Progress progress_;
   std::unique_ptr<Sampler> sampler_;
-  SolverLog log_;
+  SolverLog log_{components(scene_)};
   NoiseMonitor monitor_;
   Status status_ = Status::running;
   std::string reason_;
@@ -288,20 +394,58 @@ class CaseRun {
   int small_steps_ = 0;
   std::map<std::string, double> cpu_by_program_;
   Clock::time_point start_ = Clock::now();
+  double wall_before_ = 0.0;
   double own_cpu_before_ = runs::cpu_seconds();
 };
 
-}  // namespace
+void check_ranks(const scenes::Scene& scene, int ranks) {
+  if (ranks > 1 && scene.kind == scenes::Kind::duct)
+    throw scenes::SceneError(
+        fmt::format("{}: --ranks {}: a duct is one column of cells; allowed: 1", scene.path.string(), ranks));
+}
 
-RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
-  check_supported(scene);
-  plug_in_for(scene);  // it says what is missing before anything is written
-  refuse_what_no_case_has(scene);
-  const auto outcome = CaseRun(scene, options, needed_programs(scene)).run();
+RunOutcome finished(const RunOutcome& outcome, const RunOptions& options) {
   if (outcome.status == Status::failed)
     throw runs::NumericsError(
         fmt::format("{}; the logs are in {}", outcome.reason, (options.directory / "case").string()));
   return outcome;
+}
+
+}  // namespace
+
+RunOutcome run_scene(const scenes::Scene& given, const RunOptions& options) {
+  // What is missing is said before anything is written.
+  refuse_what_no_case_has(given);
+  const scenes::Scene scene = settled(given, plug_in_for(given).has_value());
+  check_supported(scene);
+  check_ranks(scene, options.ranks);
+  return finished(CaseRun(scene, options, needed_programs(scene, options.ranks)).run(), options);
+}
+
+RunOutcome resume_run(const RunOptions& options) {
+  const EarlierRun earlier = read_earlier_run(options.directory);
+  check_ranks(earlier.scene, options.ranks);
+  plug_in_for(earlier.scene);
+  const Programs programs = needed_programs(earlier.scene, options.ranks);
+  const fs::path case_directory = options.directory / "case";
+  if (CaseFields::ranks_in(case_directory) > 1) {
+    // It was cut off before its parts were put together.
+    remove_cut_off_times(case_directory, earlier.scene);
+    const fs::path log = case_directory / "log.reconstructPar";
+    runs::Process process(needed_program("reconstructPar"), {"-newTimes"}, case_directory, log,
+                          openfoam_environment());
+    while (!process.wait(poll_interval)) {
+    }
+    if (!process.poll()->good())
+      throw runs::RunError(
+          fmt::format("{}: its parts cannot be put together: reconstructPar ended with {} ({})",
+                      case_directory.string(), process.poll()->how(), log.string()));
+    remove_parts(case_directory);
+  }
+  const auto state = latest_state(options.directory, earlier);
+  if (!state) return run_scene(earlier.scene, options);
+  fill_parameters(earlier.scene, case_directory, earlier.plug_in, options.ranks);
+  return finished(CaseRun(earlier.scene, options, programs, state).run(), options);
 }
 
 }  // namespace flowrest::foam

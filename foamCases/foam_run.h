@@ -12,6 +12,7 @@ namespace flowrest::foam {
 /// How a run is made.
 struct RunOptions {
   std::filesystem::path directory;  ///< of the run; the case goes into directory/case
+  int ranks = 1;                    ///< above 1: decomposed, under mpirun
   bool quiet = false;
   double grace = 60.0;  ///< s, that a solver asked to stop has to end its step and write
 };
@@ -30,5 +31,11 @@ struct RunOutcome {
 /// before anything is written), runs::NumericsError where the run failed (the run directory stays, with the
 /// reason).
 RunOutcome run_scene(const scenes::Scene&, const RunOptions&);
+
+/// Goes on with the run in options.directory from its latest whole state, or from the start where there is
+/// none.
+/// @throws runs::RunError where that is no run of this solver, has come to its end, or its case is not the
+/// one that `flowrest foam` filled; else as run_scene.
+RunOutcome resume_run(const RunOptions&);
 
 }  // namespace flowrest::foam

@@ -23,7 +23,8 @@ using testing::roussel_slump;
 
 class FakeOpenFoam : public ::testing::Test {
  protected:
-  FakeOpenFoam() : scene_(roussel_slump("papanastasiou", {"foam.cell=0.05", "time.end=1"})) {
+  FakeOpenFoam()
+      : scene_(roussel_slump("papanastasiou", {"foam.cell=0.05", "time.end=1", "foam.base_rows=1"})) {
     setenv("PATH", (folder_.path().string() + ":/usr/bin:/bin").c_str(), 1);
     for (const char* name : {"blockMesh", "setAlphaField"}) program(name, "exit 0");
     // 9 rings, 6 + 1 rows: the two inner rings filled to the cone's top.
@@ -139,6 +140,81 @@ TEST_F(FakeOpenFoam, ConcreteAtTheRimEndsTheRun) {
   EXPECT_THAT(
       failure(),
       HasSubstr("the concrete reached the rim of the mesh at 0.5 s: geometry.domain_radius = 0.45 m"));
+}
+
+TEST_F(FakeOpenFoam, ConcreteFasterThanItsWeightCanMakeItEndsTheRun) {
+  program("interFoam",
+          step(0.5, 0.5) +
+              "mkdir 0.5; cp 0/alpha.concrete 0.5/; sed 's/uniform (0 0 0)/uniform (0 0 9)/' 0/U > 0.5/U\n" +
+              step(1.0, 0.5) + "sleep 60");
+  // 2300 kg/m3 in 0.00942 m3, at 9 m/s against the fall of its 0.3 m.
+  EXPECT_THAT(failure(), HasSubstr("the concrete moves with 878 J at 0.5 s"));
+  EXPECT_THAT(testing::text_of(options_.directory / "case" / "log.interFoam"), HasSubstr("Time = 0.5"));
+}
+
+TEST_F(FakeOpenFoam, AnotherCaseIsLeftAlone) {
+  program("interFoam", "exit 1");
+  fs::create_directories(options_.directory / "system");
+  std::ofstream(options_.directory / "system" / "controlDict") << "application simpleFoam;";
+  EXPECT_THROW(run_scene(scene_, options_), runs::RunError);
+  EXPECT_EQ(testing::text_of(options_.directory / "system" / "controlDict"), "application simpleFoam;");
+  EXPECT_FALSE(fs::exists(options_.directory / "run.json"));
+}
+
+/// What --resume says of a folder.
+std::string refusal_to_resume(const fs::path& directory) {
+  RunOptions options;
+  options.directory = directory;
+  options.quiet = true;
+  try {
+    resume_run(options);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_F(FakeOpenFoam, OnlyAnUnfinishedRunOfItsOwnIsGoneOnWith) {
+  EXPECT_THAT(refusal_to_resume(options_.directory), HasSubstr("is not a run of `flowrest foam`"));
+  program("interFoam", step(1.0, 0.5) + "echo End");
+  run_scene(scene_, options_);
+  EXPECT_THAT(refusal_to_resume(options_.directory), HasSubstr("has come to its end (end-time)"));
+}
+
+TEST_F(FakeOpenFoam, ARunWithoutAWholeStateStartsOver) {
+  program("interFoam", step(0.5, 0.5) + "mkdir 0.5; cp 0/U 0.5/; kill -SEGV $$");
+  failure();
+  program("interFoam", step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  EXPECT_EQ(resume_run(options_).status, runs::Status::end_time);
+  EXPECT_EQ(runs::read_run(options_.directory).info["steps"], 2);
+}
+
+/// A state at 0.5 s with everything that is needed to go on, out of the initial fields.
+const char* const whole_state =
+    "mkdir -p 0.5/uniform; cp 0/U 0/alpha.concrete 0/p_rgh 0.5/; touch 0.5/phi 0.5/uniform/time\n";
+
+TEST_F(FakeOpenFoam, ACaseThatWasChangedIsNotGoneOnWith) {
+  program("interFoam", step(0.5, 0.5) + whole_state + "kill -SEGV $$");
+  failure();
+  std::ofstream(options_.directory / "case" / "sceneParameters", std::ios::app) << "\n";
+  EXPECT_EQ(refusal_to_resume(options_.directory).find("it is not what"), std::string::npos)
+      << "what follows the ranks is no matter of the scene";
+  auto text = testing::text_of(options_.directory / "case" / "sceneParameters");
+  text.replace(text.find("endTime"), 7, "anotherTime");
+  std::ofstream(options_.directory / "case" / "sceneParameters") << text;
+  EXPECT_THAT(refusal_to_resume(options_.directory), HasSubstr("it is not what `flowrest foam` writes"));
+}
+
+TEST_F(FakeOpenFoam, GoingOnKeepsWhatTheRunHasBehindIt) {
+  program("interFoam", step(0.5, 0.5) + whole_state + step(0.6, 0.1) + "mkdir 0.6; kill -SEGV $$");
+  failure();
+  program("interFoam", "[ -d 0.6 ] && exit 1\n" + step(1.0, 0.5) + "echo End");
+  EXPECT_EQ(resume_run(options_).status, runs::Status::end_time);
+  const auto run = runs::read_run(options_.directory);
+  EXPECT_EQ(run.info["steps"], 2);  // the one to 0.6 s was lost
+  EXPECT_EQ(run.info["resumed_at_s"][0], 0.5);
+  EXPECT_EQ(run.history.at("time_s"), (std::vector<double>{0.0, 0.5}));
+  EXPECT_TRUE(fs::exists(options_.directory / "case" / "log.interFoam.1"));
 }
 
 /// Sends this process an interrupt once the run's solver has begun.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
 #include "foamCases/plug_in.h"

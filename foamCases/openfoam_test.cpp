@@ -8,6 +8,7 @@
 #include <cmath>
 #include <thread>
 
+#include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
@@ -82,6 +83,20 @@ TEST_F(OpenFoam, TheInitialVolumeIsExactOnAnyGrid) {
   }
 }
 
+/// Round about the axis the quarter does what the wedge does.
+TEST_F(OpenFoam, AQuarterSlumpsAsTheWedgeDoes) {
+  const std::vector<std::string> wedge = {"foam.cell=0.03", "time.end=0.2"};
+  auto quarter = wedge;
+  quarter.push_back("geometry.dimension=quarter");
+  const double round = run(roussel_slump("papanastasiou", wedge)).history.at("spread_mm").back();
+  const auto result = run(roussel_slump("papanastasiou", quarter));
+  EXPECT_EQ(outcome_.status, runs::Status::end_time);
+  EXPECT_LT(std::abs(result.info["initial_volume_error"].get<double>()), 1e-10);
+  EXPECT_LT(result.info["volume_error"].get<double>(), 1e-6);
+  EXPECT_NEAR(result.history.at("spread_mm").back(), round, 15.0);  // half a cell
+  EXPECT_GT(result.history.at("initial_residual_U").back(), 0.0);
+}
+
 TEST_F(OpenFoam, RunsEveryLawItAcceptsOnBothWalls) {
   std::vector<const char*> models{"papanastasiou", "bi-viscous", "newtonian"};
   if (find_plug_in()) models.push_back("elasto-viscoplastic");
@@ -101,16 +116,20 @@ TEST_F(OpenFoam, PapanastasiouAndBiViscousAgreeWhileTheConcreteFlows) {
   EXPECT_GT(newtonian, first + 3.0);
 }
 
-TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {
-  const fs::path history = folder_.path() / "run" / "history.csv";
-  std::thread interrupt([&] {
+/// Interrupts this process once a run has so many rows of history.
+std::thread interrupt_at(const fs::path& history, std::size_t bytes) {
+  return std::thread([history, bytes] {
     for (int i = 0; i < 3000; ++i) {
       std::error_code ignored;
-      if (fs::exists(history, ignored) && fs::file_size(history, ignored) > 600) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (fs::exists(history, ignored) && fs::file_size(history, ignored) > bytes) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     kill(getpid(), SIGINT);
   });
+}
+
+TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {
+  auto interrupt = interrupt_at(folder_.path() / "run" / "history.csv", 600);
   const auto result = run(roussel_slump("papanastasiou", {"foam.cell=0.02"}));
   interrupt.join();
   EXPECT_EQ(outcome_.status, runs::Status::interrupted);
@@ -119,6 +138,44 @@ TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {
   EXPECT_GE(result.history.rows(), 2U);
   const auto last = time_directories(result.directory / "case").back();
   EXPECT_TRUE(fs::exists(last.second / "p_rgh")) << last.second;
+}
+
+/// Between rows, linearly.
+double spread_at(const runs::Table& history, double time) {
+  const auto& times = history.at("time_s");
+  const auto& spread = history.at("spread_mm");
+  std::size_t k = 1;
+  while (k + 1 < times.size() && times[k] < time) ++k;
+  return std::lerp(spread[k - 1], spread[k], (time - times[k - 1]) / (times[k] - times[k - 1]));
+}
+
+/// Parts of a case, an interrupt in the midst and going on with another number of ranks: the answer stays.
+TEST_F(OpenFoam, RanksAndInterruptsDoNotChangeTheAnswer) {
+  const auto scene = roussel_slump("papanastasiou", {"foam.cell=0.03", "time.end=0.4"});
+  const auto whole = run(scene).history;
+  RunOptions options;
+  options.directory = folder_.path() / "parts";
+  options.quiet = true;
+  options.ranks = 2;
+  auto interrupt = interrupt_at(options.directory / "history.csv", 900);
+  outcome_ = run_scene(scene, options);
+  interrupt.join();
+  ASSERT_EQ(outcome_.status, runs::Status::interrupted);
+  EXPECT_THAT(outcome_.reason, ::testing::HasSubstr("--resume " + options.directory.string()));
+  EXPECT_FALSE(fs::exists(options.directory / "case" / "processor0"));
+  const auto half = runs::read_run(options.directory);
+  EXPECT_EQ(half.info["status"], "interrupted");
+  EXPECT_GE(half.history.rows(), 2U);
+  EXPECT_LT(half.history.at("time_s").back(), 0.39);
+
+  options.ranks = 1;
+  EXPECT_EQ(resume_run(options).status, runs::Status::end_time);
+  const auto result = runs::read_run(options.directory);
+  const auto& time = result.history.at("time_s");
+  for (std::size_t i = 1; i < time.size(); ++i) EXPECT_GT(time[i], time[i - 1]);
+  // Their steps fall at other times, and the front moves by half a millimetre in one of them.
+  EXPECT_NEAR(result.history.at("spread_mm").back(), spread_at(whole, time.back()), 1.0);
+  EXPECT_GT(result.info["steps"].get<int>(), half.info["steps"].get<int>());
 }
 
 class PlugIn : public OpenFoam {
@@ -138,7 +195,8 @@ TEST_F(PlugIn, AgreesWithOpenFoamsOwnLaws) {
     const auto spread = [&](const char* laws) {
       const auto result = run(roussel_slump(
           model, {"foam.cell=0.02", "time.end=0.3", "foam.max_time_step=0.002", "foam.max_courant=10",
-                  "foam.strain_rate=mixture", "foam.wetting=fraction", std::string("foam.laws=") + laws}));
+                  "foam.strain_rate=mixture", "foam.wetting=fraction", "foam.base_rows=1",
+                  "foam.air_rise_time=0", std::string("foam.laws=") + laws}));
       EXPECT_EQ(result.info["laws"], laws);
       return result.history.at("spread_mm").back();
     };
@@ -167,6 +225,23 @@ TEST_F(PlugIn, ACopiedCaseWithoutTheLibrarySaysSo) {
   EXPECT_EQ(allrun.poll()->exit_code, 4);
   EXPECT_THAT(testing::text_of(folder_.path() / "log"),
               ::testing::HasSubstr("takes its laws from flowrest's plug-in"));
+}
+
+/// A slice of the driven duct: once the force is stepped down the material stops, and the run says so.
+TEST_F(PlugIn, ARunThatHasStoppedSaysSoAndEnds) {
+  const auto scene = scenes::load_scene(
+      "poiseuille-step-down",
+      {{"foam.cell=0.05", "time.stop_at_rest=true", "forces.body_force=[[0, 2000], [2, 360]]", "time.end=30"},
+       scenes::Model::elasto_viscoplastic});
+  const auto result = run(scene);
+  EXPECT_EQ(outcome_.status, runs::Status::at_rest);
+  EXPECT_EQ(result.info["status"], "at-rest");
+  const double rest = result.info["rest_time_s"];
+  EXPECT_GT(rest, 2.5);
+  EXPECT_LT(rest, 8.0);
+  EXPECT_LT(result.info["growth_to_come"].get<double>(), 0.006);
+  EXPECT_LT(result.info["time_reached_s"].get<double>(), rest + 5.0);
+  EXPECT_LT(result.info["plug_velocity_m_s"].get<double>(), 0.02);
 }
 
 /// Growth without breakdown is the same everywhere, so whatever the flow and the interface do, the mean over

@@ -38,6 +38,15 @@ std::optional<fs::path> find_plug_in() {
   return fs::absolute(path);
 }
 
+Scene settled(Scene scene, bool plug_in) {
+  constexpr int rows = 4;
+  constexpr double rise_time = 0.1;  // s
+  if (scene.kind != scenes::Kind::slump) return scene;
+  if (scene.foam.base_rows == 0) scene.foam.base_rows = plug_in ? rows : 1;
+  if (!scene.foam.air_rise_time) scene.foam.air_rise_time = plug_in ? rise_time : 0.0;
+  return scene;
+}
+
 bool needs_plug_in(const Scene& scene) {
   return scene.material.model == Model::elasto_viscoplastic ||
          (scene.thixotropy && scene.material.model != Model::newtonian);

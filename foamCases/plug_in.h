@@ -18,6 +18,10 @@ std::optional<std::filesystem::path> find_plug_in();
 /// it is told to do without.
 std::optional<std::filesystem::path> plug_in_for(const scenes::Scene&);
 
+/// The scene with what depends on the plug-in settled: rows at a slump's base and whether trapped air rises,
+/// where it does not say.
+scenes::Scene settled(scenes::Scene, bool plug_in);
+
 /// Whether a scene's law is one that only the plug-in has.
 bool needs_plug_in(const scenes::Scene&);
 

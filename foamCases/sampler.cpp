@@ -1,7 +1,6 @@
 #include "foamCases/sampler.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -10,23 +9,8 @@
 
 namespace flowrest::foam {
 
-namespace fs = std::filesystem;
-
-std::vector<std::pair<double, fs::path>> time_directories(const fs::path& case_directory) {
-  std::vector<std::pair<double, fs::path>> found;
-  for (const auto& entry : fs::directory_iterator(case_directory)) {
-    const std::string name = entry.path().filename().string();
-    double time = 0.0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), time);
-    if (error == std::errc{} && end == name.data() + name.size() && entry.is_directory())
-      found.emplace_back(time, entry.path());
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-Sampler::Sampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
-    : scene_(scene), case_directory_(std::move(case_directory)), writer_(writer) {}
+Sampler::Sampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
+    : scene_(scene), fields_(std::move(fields)), writer_(writer) {}
 
 void Sampler::note(const SolverStep& step) { steps_.push_back(step); }
 
@@ -44,13 +28,25 @@ SolverStep Sampler::since_last_row(double time) {
 }
 
 void Sampler::sample_before(double complete_before) {
-  for (const auto& [time, directory] : time_directories(case_directory_)) {
+  for (const auto& [time, name] : fields_.times()) {
     if (time >= complete_before) return;
     if (last_sampled_ && time <= *last_sampled_) continue;
     last_sampled_ = time;
-    sample(time, directory);
-    if (time > 0.0 && !fs::exists(directory / "p_rgh")) fs::remove_all(directory);
+    sample(time, [this, &name = name](const std::string& field, int components) {
+      return fields_.read(name, field, cells(), components);
+    });
+    if (time > 0.0 && !fields_.holds(name, "p_rgh")) fields_.remove(name);
   }
+}
+
+void Sampler::continue_from(const runs::Table& history) {
+  if (history.rows() == 0) return;
+  last_sampled_ = history.at("time_s").back();
+  const auto next = [&](double interval) {
+    return (std::floor(*last_sampled_ / interval + 0.5) + 1.0) * interval;
+  };
+  next_history_ = next(scene_.output.history_interval);
+  next_profile_ = next(scene_.output.profile_interval);
 }
 
 bool Sampler::history_is_due(double time) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "foamCases/case_fields.h"
 #include "foamCases/solver_log.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
@@ -28,21 +29,26 @@ class Sampler {
   /// @throws FieldError where one of them is not whole.
   void sample_before(double complete_before);
 
+  /// Goes on with a run whose rows so far are these: what was sampled is not sampled again.
+  virtual void continue_from(const runs::Table& history);
+
   /// s, of the last sample; 0 before the first
   double time() const { return last_sampled_.value_or(0.0); }
 
   virtual std::size_t cells() const = 0;
   /// The state in a few words, for progress.
   virtual std::string progress() const = 0;
+  /// The largest shear rate at the base or inside, 1/s, of the last sample: what still moves the concrete.
+  virtual double shear_rate() const = 0;
   /// Why the run can give no answer any more; empty where it can.
   virtual std::string fault() const = 0;
   /// The last gauges, for run.json.
   virtual nlohmann::ordered_json summary() const = 0;
 
  protected:
-  Sampler(const scenes::Scene&, std::filesystem::path case_directory, runs::RunWriter&);
+  Sampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
 
-  virtual void sample(double time, const std::filesystem::path& directory) = 0;
+  virtual void sample(double time, const ReadField&) = 0;
 
   const scenes::Scene& scene() const { return scene_; }
   runs::RunWriter& writer() { return writer_; }
@@ -55,16 +61,12 @@ class Sampler {
   bool is_due(double time, double interval, double& next) const;
 
   const scenes::Scene& scene_;
-  std::filesystem::path case_directory_;
+  CaseFields fields_;
   runs::RunWriter& writer_;
   std::optional<double> last_sampled_;
   double next_history_ = 0.0;
   double next_profile_ = 0.0;
   std::deque<SolverStep> steps_;  ///< not yet in a row
 };
-
-/// The time directories of a case in ascending order; other names are passed over.
-std::vector<std::pair<double, std::filesystem::path>> time_directories(
-    const std::filesystem::path& case_directory);
 
 }  // namespace flowrest::foam

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "foamCases/field_file.h"
 #include "runs/depth.h"
 
 namespace flowrest::foam {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -20,28 +18,37 @@ constexpr double volume_bound = 0.1;      // relative; a bounded phase fraction 
 
 }  // namespace
 
-SlumpSampler::SlumpSampler(const scenes::Scene& scene, fs::path case_directory, runs::RunWriter& writer)
-    : Sampler(scene, std::move(case_directory), writer), grid_(wedge_grid(scene)) {
-  std::vector<std::string> columns{
-      "time_s",      "spread_mm",   "spread_1p5_mm",    "spread_6_mm",        "front_mm",
-      "height_mm",   "volume_m3",   "kinetic_energy_J", "shear_rate_p99_1_s", "initial_residual_U",
-      "courant_max", "time_step_s", "trapped_air_m3"};
+SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
+    : Sampler(scene, std::move(fields), writer), mesh_(slump_mesh(scene)) {
+  std::vector<std::string> columns{"time_s",
+                                   "spread_mm",
+                                   "spread_1p5_mm",
+                                   "spread_6_mm",
+                                   "front_mm",
+                                   "height_mm",
+                                   "volume_m3",
+                                   "kinetic_energy_J",
+                                   "shear_rate_p99_1_s",
+                                   "base_shear_rate_p99_1_s",
+                                   "initial_residual_U",
+                                   "courant_max",
+                                   "time_step_s",
+                                   "trapped_air_m3",
+                                   "volume_error"};
   if (scene.thixotropy) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
 
-void SlumpSampler::sample(double time, const fs::path& directory) {
-  const SlumpFields fields{read_internal_field(directory / "alpha.concrete", grid_.cells(), 1),
-                           read_internal_field(directory / "U", grid_.cells(), 3)};
+void SlumpSampler::sample(double time, const ReadField& read) {
+  const SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
   if (scene().thixotropy) {
     // At the start the solver has not yet written the field: it is what the scene says.
-    const auto flocculation =
-        time > 0.0 ? read_internal_field(directory / "flocculation", grid_.cells(), 1)
-                   : std::vector<double>(grid_.cells(), scene().thixotropy->initial_flocculation);
-    state_.flocculation = mean_over_concrete(grid_, fields.fraction, flocculation);
+    const auto flocculation = time > 0.0
+                                  ? read("flocculation", 1)
+                                  : std::vector<double>(cells(), scene().thixotropy->initial_flocculation);
+    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, flocculation);
   }
-  const auto gauges =
-      gauge_slump(grid_, fields, scene().material.density, scene().base.law == scenes::Wall::slip);
+  const auto gauges = mesh_->gauge(fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   if (time == 0.0) state_.first_volume = gauges.volume;
   state_.time = time;
   state_.spread = runs::spread(gauges.radius, gauges.depth);
@@ -49,6 +56,11 @@ void SlumpSampler::sample(double time, const fs::path& directory) {
   state_.height = runs::centre_depth(gauges.radius, gauges.depth);
   state_.volume = gauges.volume;
   state_.rim_depth = gauges.rim_depth;
+  state_.kinetic_energy = gauges.kinetic_energy;
+  state_.shear_rate = gauges.shear_rate_p99;
+  state_.base_shear_rate = gauges.base_shear_rate_p99;
+  state_.trapped_air = gauges.trapped_air;
+  state_.most_trapped_air = std::max(state_.most_trapped_air, gauges.trapped_air);
   state_.volume_error = std::max(state_.volume_error, std::abs(gauges.volume / state_.first_volume - 1.0));
   if (history_is_due(time)) write_history(time, gauges);
   if (profile_is_due(time)) writer().profile(time, gauges.radius, gauges.depth);
@@ -68,10 +80,12 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
                           gauges.volume,
                           gauges.kinetic_energy,
                           gauges.shear_rate_p99,
+                          gauges.base_shear_rate_p99,
                           steps.initial_residual_u,
                           steps.courant,
                           steps.time_step,
-                          gauges.trapped_air};
+                          gauges.trapped_air,
+                          gauges.volume / state_.first_volume - 1.0};
   if (scene().thixotropy) row.push_back(state_.flocculation);
   writer().history(row);
 }
@@ -87,7 +101,35 @@ std::string SlumpSampler::fault() const {
   if (!(state_.volume_error < volume_bound))
     return fmt::format("the volume of concrete is off by {:.0f} % at {:.4g} s: the flow diverges",
                        100.0 * state_.volume_error, state_.time);
+  if (!(state_.kinetic_energy < energy_bound()))
+    return fmt::format(
+        "the concrete moves with {:.3g} J at {:.4g} s, and all its weight can give is {:.3g} J: the flow "
+        "diverges",
+        state_.kinetic_energy, state_.time, energy_bound());
   return "";
+}
+
+/// What the cone gives where all of it falls to the base, J; without gravity nothing bounds it here.
+double SlumpSampler::energy_bound() const {
+  const auto& cone = scene().slump();
+  const double gravity = scene().forces.gravity;
+  if (!(gravity > 0.0)) return std::numeric_limits<double>::infinity();
+  return scene().material.density * gravity * cone.volume() * cone.cone_height;
+}
+
+void SlumpSampler::continue_from(const runs::Table& history) {
+  Sampler::continue_from(history);
+  if (history.rows() == 0) return;
+  state_.first_volume = history.at("volume_m3").front();
+  for (const double error : history.at("volume_error"))
+    state_.volume_error = std::max(state_.volume_error, std::abs(error));
+  for (const double air : history.at("trapped_air_m3"))
+    state_.most_trapped_air = std::max(state_.most_trapped_air, air);
+  state_.time = time();
+  state_.spread = 1e-3 * history.at("spread_mm").back();
+  state_.front = 1e-3 * history.at("front_mm").back();
+  state_.height = 1e-3 * history.at("height_mm").back();
+  state_.volume = history.at("volume_m3").back();
 }
 
 nlohmann::ordered_json SlumpSampler::summary() const {
@@ -95,7 +137,9 @@ nlohmann::ordered_json SlumpSampler::summary() const {
           {"front_mm", 1e3 * state_.front},
           {"height_mm", 1e3 * state_.height},
           {"initial_volume_error", state_.first_volume / scene().slump().volume() - 1.0},
-          {"volume_error", state_.volume_error}};
+          {"volume_error", state_.volume_error},
+          {"trapped_air_m3", state_.trapped_air},
+          {"trapped_air_max_m3", state_.most_trapped_air}};
 }
 
 }  // namespace flowrest::foam

@@ -1,41 +1,49 @@
 #pragma once
 
-#include <filesystem>
+#include <algorithm>
+#include <memory>
 
 #include "foamCases/sampler.h"
-#include "foamCases/wedge_gauge.h"
-#include "foamCases/wedge_grid.h"
+#include "foamCases/slump_mesh.h"
 
 namespace flowrest::foam {
 
 /// The state of a slump when it was last sampled.
 struct SlumpState {
-  double time = 0.0;          ///< s
-  double spread = 0.0;        ///< m, at 3 mm depth
-  double front = 0.0;         ///< m
-  double height = 0.0;        ///< m, centre depth
-  double volume = 0.0;        ///< m3
-  double rim_depth = 0.0;     ///< m
-  double volume_error = 0.0;  ///< largest so far, relative to the first sample
-  double first_volume = 0.0;  ///< m3
-  double flocculation = 0.0;  ///< mean over the concrete
+  double time = 0.0;              ///< s
+  double spread = 0.0;            ///< m, at 3 mm depth
+  double front = 0.0;             ///< m
+  double height = 0.0;            ///< m, centre depth
+  double volume = 0.0;            ///< m3
+  double rim_depth = 0.0;         ///< m
+  double volume_error = 0.0;      ///< largest so far, relative to the first sample
+  double first_volume = 0.0;      ///< m3
+  double kinetic_energy = 0.0;    ///< J
+  double shear_rate = 0.0;        ///< 1/s, 99th percentile inside
+  double base_shear_rate = 0.0;   ///< 1/s, 99th percentile at the base
+  double trapped_air = 0.0;       ///< m3
+  double most_trapped_air = 0.0;  ///< m3, so far
+  double flocculation = 0.0;      ///< mean over the concrete
 };
 
-/// Gauges a slump in a wedge.
+/// Gauges a slump, in a wedge or a quarter.
 class SlumpSampler : public Sampler {
  public:
-  SlumpSampler(const scenes::Scene&, std::filesystem::path case_directory, runs::RunWriter&);
+  SlumpSampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
 
-  std::size_t cells() const override { return grid_.cells(); }
+  std::size_t cells() const override { return mesh_->cells(); }
   std::string progress() const override;
+  double shear_rate() const override { return std::max(state_.shear_rate, state_.base_shear_rate); }
   std::string fault() const override;
+  void continue_from(const runs::Table& history) override;
   nlohmann::ordered_json summary() const override;
 
  private:
-  void sample(double time, const std::filesystem::path& directory) override;
+  double energy_bound() const;
+  void sample(double time, const ReadField&) override;
   void write_history(double time, const SlumpGauges&);
 
-  WedgeGrid grid_;
+  std::unique_ptr<SlumpMesh> mesh_;
   SlumpState state_;
 };
 

@@ -59,11 +59,13 @@ void SolverLog::read_line(std::string_view line) {
       time_begun_ = *time;
       in_step_ = true;
     }
-  } else if (line.find("Solving for Ux,") != std::string_view::npos ||
-             line.find("Solving for Uz,") != std::string_view::npos) {
+  } else if (const auto solved = line.find("Solving for U");
+             solved != std::string_view::npos && solved + 13 < line.size() &&
+             components_.find(line[solved + 13]) != std::string::npos) {
     step_.initial_residual_u =
         std::max(step_.initial_residual_u, number_after(line, "Initial residual =").value_or(0.0));
   } else if (line.starts_with("ExecutionTime") && in_step_) {
+    execution_time_ = number_after(line, "=").value_or(execution_time_);
     steps_.push_back(step_);
     in_step_ = false;
   } else if (line == "End") {

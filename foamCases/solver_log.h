@@ -15,12 +15,15 @@ struct SolverStep {
   double time = 0.0;                ///< s, at its end
   double time_step = 0.0;           ///< s
   double courant = 0.0;             ///< largest in the mesh
-  double initial_residual_u = 0.0;  ///< the largest of the wedge's two components, radial and vertical
+  double initial_residual_u = 0.0;  ///< the largest of the components that count
 };
 
 /// Turns log text, fed in any pieces, into steps; a line counts once it is whole.
 class SolverLog {
  public:
+  /// `components`: those of U that are solved for; the swirl of a wedge, y, is empty.
+  explicit SolverLog(std::string components = "xz") : components_(std::move(components)) {}
+
   void feed(std::string_view text);
 
   /// Steps that ended since the last call.
@@ -28,8 +31,9 @@ class SolverLog {
 
   /// The time the solver last began a step to; what was written for earlier times is complete. s
   std::optional<double> time_begun() const { return time_begun_; }
-  bool ended() const { return ended_; }                ///< by itself, with "End"
-  const std::string& build() const { return build_; }  ///< e.g. "OPENFOAM=1912 patch=200626"
+  bool ended() const { return ended_; }                      ///< by itself, with "End"
+  const std::string& build() const { return build_; }        ///< e.g. "OPENFOAM=1912 patch=200626"
+  double execution_time() const { return execution_time_; }  ///< s, CPU of one rank
   /// Why the solver cannot go on, from its own message or from a number that is none; empty while all is
   /// well.
   std::string fault() const;
@@ -38,10 +42,12 @@ class SolverLog {
   void read_line(std::string_view line);
   void read_fault(std::string_view line);
 
+  std::string components_;
   std::string partial_;
   SolverStep step_;
   std::vector<SolverStep> steps_;
   std::optional<double> time_begun_;
+  double execution_time_ = 0.0;
   bool ended_ = false;
   bool in_step_ = false;
   std::string build_;

@@ -51,6 +51,13 @@ TEST(SolverLog, ReadsStepsFromPiecesOfAnyLength) {
   }
 }
 
+TEST(SolverLog, CountsTheComponentsItIsTold) {
+  SolverLog log("xyz");
+  log.feed(step_text(0.5, 0.25, 0.01));
+  EXPECT_EQ(log.take_steps().at(0).initial_residual_u, 0.9);
+  EXPECT_EQ(log.execution_time(), 1.5);
+}
+
 TEST(SolverLog, AHalfWrittenLineDoesNotCountYet) {
   SolverLog log;
   log.feed(step_text(0.5, 0.25, 0.01) + "Courant Number mean: 0 max: 0.1\ndeltaT = 0.1\nTime = 1.2");

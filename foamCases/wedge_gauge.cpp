@@ -70,19 +70,6 @@ double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction
   return 0.0;
 }
 
-/// The value below which 99 % of the weight lies.
-double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
-  std::sort(value_and_weight.begin(), value_and_weight.end());
-  double total = 0.0;
-  for (const auto& [value, weight] : value_and_weight) total += weight;
-  double below = 0.0;
-  for (const auto& [value, weight] : value_and_weight) {
-    below += weight;
-    if (below >= 0.99 * total) return value;
-  }
-  return 0.0;
-}
-
 double concrete_shear_rate(const WedgeGrid& grid, const SlumpFields& fields, bool slip) {
   const auto rate = shear_rate(grid, fields.velocity, slip);
   std::vector<std::pair<double, double>> in_concrete;
@@ -95,7 +82,31 @@ double concrete_shear_rate(const WedgeGrid& grid, const SlumpFields& fields, boo
   return percentile_99(std::move(in_concrete));
 }
 
+/// Velocity over the base by the half cell that lies between: the rate that the wall's stress answers to.
+double base_shear_rate(const WedgeGrid& grid, const SlumpFields& fields) {
+  std::vector<std::pair<double, double>> under_concrete;
+  for (int ring = 0; ring < grid.rings; ++ring) {
+    const auto cell = grid.index(ring, 0);
+    if (fields.fraction[cell] >= nearly_full)
+      under_concrete.emplace_back(std::abs(fields.velocity[3 * cell]) / (0.5 * grid.row_height(0)),
+                                  grid.ring_area(ring));
+  }
+  return percentile_99(std::move(under_concrete));
+}
+
 }  // namespace
+
+double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
+  std::sort(value_and_weight.begin(), value_and_weight.end());
+  double total = 0.0;
+  for (const auto& [value, weight] : value_and_weight) total += weight;
+  double below = 0.0;
+  for (const auto& [value, weight] : value_and_weight) {
+    below += weight;
+    if (below >= 0.99 * total) return value;
+  }
+  return 0.0;
+}
 
 std::vector<double> shear_rate(const WedgeGrid& grid, const std::vector<double>& velocity, bool slip) {
   const Component radial(grid, velocity, 0);
@@ -137,6 +148,7 @@ SlumpGauges gauge_slump(const WedgeGrid& grid, const SlumpFields& fields, double
   gauges.rim_depth = gauges.depth.back();
   gauges.front = front_diameter(grid, fields.fraction);
   gauges.shear_rate_p99 = concrete_shear_rate(grid, fields, slip);
+  if (!slip) gauges.base_shear_rate_p99 = base_shear_rate(grid, fields);
   return gauges;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "foamCases/wedge_grid.h"
@@ -19,7 +20,9 @@ struct SlumpGauges {
   double volume = 0.0;          ///< m3, of concrete
   double kinetic_energy = 0.0;  ///< J, of the concrete alone
   double shear_rate_p99 =
-      0.0;             ///< 1/s, the 99th percentile by volume over cells at least 90 % full; 0 without any
+      0.0;  ///< 1/s, the 99th percentile by volume over cells at least 90 % full; 0 without any
+  double base_shear_rate_p99 =
+      0.0;             ///< 1/s, at the base, the 99th percentile by area under cells at least 90 % full
   double front = 0.0;  ///< m, twice the radius at which the base row is half full; 0 where it nowhere is
   double trapped_air = 0.0;  ///< m3, of air with fuller cells above it
   double rim_depth = 0.0;    ///< m, depth in the outermost ring
@@ -31,6 +34,9 @@ SlumpGauges gauge_slump(const WedgeGrid&, const SlumpFields&, double density, bo
 /// Mean of a cell field over the concrete, by its volume.
 double mean_over_concrete(const WedgeGrid&, const std::vector<double>& fraction,
                           const std::vector<double>& field);
+
+/// The value below which 99 % of the weight lies; 0 without any.
+double percentile_99(std::vector<std::pair<double, double>> value_and_weight);
 
 /// Shear rate sqrt(2 D:D) in every cell, with faces interpolated linearly as the case's schemes do. 1/s
 std::vector<double> shear_rate(const WedgeGrid&, const std::vector<double>& velocity, bool slip);

@@ -47,7 +47,7 @@ TEST(WedgeGrid, FitsTheDomainAndTheConeTopWithAnyCell) {
   for (const double cell : {0.02, 0.017, 0.01, 0.0033}) {
     const auto grid = grid_of_cells(cell);
     EXPECT_NEAR(grid.rings * grid.ring_width, 0.45, 1e-12);
-    EXPECT_NEAR(grid.cone_rows * grid.cone_row_height, 0.30, 1e-12);
+    EXPECT_NEAR(grid.base_height() + grid.cone_rows * grid.cone_row_height, 0.30, 1e-12);
     EXPECT_NEAR(grid.air_rows * grid.air_row_height, 0.05, 1e-12);
     EXPECT_NEAR(grid.ring_width / cell, 1.0, 0.1);
     double volume = 0.0;

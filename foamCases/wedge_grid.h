@@ -1,28 +1,21 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
-#include "scenes/scene.h"
+#include "foamCases/slump_rows.h"
 
-/// The slump case's mesh as the gauges see it: equal rings, and rows whose height changes at the cone's top.
+/// The slump case's mesh as the gauges see it: equal rings and rows of cells.
 namespace flowrest::foam {
 
 /// Cells of a wedge about the vertical axis; cell (ring, row) has the index ring + rings * row.
-struct WedgeGrid {
+struct WedgeGrid : SlumpRows {
   int rings = 0;
-  int cone_rows = 0;             ///< from the base to the cone's top
-  int air_rows = 0;              ///< above it
-  double ring_width = 0.0;       ///< m
-  double cone_row_height = 0.0;  ///< m
-  double air_row_height = 0.0;   ///< m
+  double ring_width = 0.0;  ///< m
 
-  int rows() const { return cone_rows + air_rows; }
   std::size_t cells() const { return static_cast<std::size_t>(rings) * static_cast<std::size_t>(rows()); }
   std::size_t index(int ring, int row) const {
     return static_cast<std::size_t>(ring) + static_cast<std::size_t>(rings) * static_cast<std::size_t>(row);
   }
-  double row_height(int row) const { return row < cone_rows ? cone_row_height : air_row_height; }
   double ring_centre(int ring) const { return (ring + 0.5) * ring_width; }
   /// Plan area of the whole ring, m2.
   double ring_area(int ring) const;
@@ -31,8 +24,8 @@ struct WedgeGrid {
 };
 
 /// The grid of a slump: cells of about foam.cell, fitted to the domain's radius, the cone's top and the
-/// domain's top.
+/// domain's top; the lowest row is cut into foam.base_rows thinner ones.
 /// @throws scenes::SceneError where the grid cannot be laid out, saying what is allowed.
-WedgeGrid wedge_grid(const scenes::Scene&);
+WedgeGrid wedge_grid(const scenes::Scene& scene);
 
 }  // namespace flowrest::foam

@@ -48,7 +48,7 @@ TEST(CheckCommand, ShowsResolvedSettingsAndLimits) {
   EXPECT_THAT(output,
               HasSubstr("  acoustic step limit         1.2 ms                1.15 cell / wave speed\n"));
   EXPECT_THAT(output, HasSubstr("  particles                   2025\n"));
-  EXPECT_THAT(output, HasSubstr("  mesh cells                  1575\n"));
+  EXPECT_THAT(output, HasSubstr("  mesh cells                  1710\n"));
 }
 
 TEST(CheckCommand, TakesSettingsBeforeAndAfterTheSceneAndAModel) {

@@ -199,6 +199,11 @@ struct Foam {
   double air_density = 1.0;               ///< kg/m3
   double air_kinematic_viscosity = 1e-2;  ///< m2/s, tames air jets at no cost in spread
   double wedge_angle = 5.0;               ///< degrees, the whole wedge
+  /// Rows into which a slump's lowest row of cells is cut; 0: 4 with the plug-in (they need air that rises),
+  /// else 1.
+  int base_rows = 0;
+  /// s, in which air under concrete rises, 0: never; 0.1 with the plug-in, which does it.
+  std::optional<double> air_rise_time;
   FoamLaws laws = FoamLaws::best;
   FoamMixing mixing = FoamMixing::arithmetic;
   double full_at = 0.5;  ///< of `saturating`: the fraction of concrete from which its stress counts in full

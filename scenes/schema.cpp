@@ -266,6 +266,12 @@ std::vector<Key> foam_keys() {
              "kinematic viscosity of the air; large, to tame its jets"),
       number("foam.wedge_angle", "degrees", above(0.0, 10.0), AT(draft.scene.foam.wedge_angle),
              "angle of the whole wedge of an axisymmetric case"),
+      integer(
+          "foam.base_rows", 0, 64, AT(draft.scene.foam.base_rows),
+          "rows of cells into which the lowest row of a slump's mesh is cut; 0: 4 with the plug-in, else 1"),
+      number("foam.air_rise_time", "s", from(0.0, largest_time), AT(draft.scene.foam.air_rise_time),
+             "time in which air that a slump has rolled over rises through it (plug-in); 0: it stays")
+          .otherwise("0.1 with the plug-in, else 0"),
       choice("foam.laws", AT(draft.scene.foam.laws),
              "whose laws a run takes: those of the rheology plug-in, OpenFOAM's own, or the best there are"),
       choice("foam.mixing", AT(draft.scene.foam.mixing),

@@ -1,0 +1,57 @@
+#include "foamCases/slump_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flowrest::foam {
+
+namespace {
+
+constexpr double most_cells = 5e6;
+
+int cells_over(double length, double cell) {
+  return static_cast<int>(std::lround(std::fmax(1.0, length / cell)));
+}
+
+void check_extent(const scenes::Scene& scene, double columns) {
+  const auto& cone = scene.slump();
+  const double cell = scene.foam.cell;
+  if (!(cell > 0.0))
+    throw scenes::SceneError(fmt::format(
+        "{}: foam.cell is missing; `flowrest foam` needs a cell size above 0 m", scene.path.string()));
+  if (cone.domain_height < cone.cone_height + cell)
+    throw scenes::SceneError(
+        fmt::format("{}: geometry.domain_height is {:g} m; it must leave a cell of air above the cone, so at "
+                    "least {:g} m",
+                    scene.path.string(), cone.domain_height, cone.cone_height + cell));
+  const double cells = columns * (cone.domain_height / cell);
+  if (cells > most_cells)
+    throw scenes::SceneError(
+        fmt::format("{}: foam.cell = {:g} m gives {:.3g} cells; at most {:.0e} are allowed",
+                    scene.path.string(), cell, cells, most_cells));
+}
+
+}  // namespace
+
+int cells_along_radius(const scenes::Scene& scene) {
+  return cells_over(scene.slump().domain_radius, scene.foam.cell);
+}
+
+SlumpRows slump_rows(const scenes::Scene& scene, double columns) {
+  check_extent(scene, columns);
+  const auto& cone = scene.slump();
+  const double cell = scene.foam.cell;
+  const int rows = std::max(2, cells_over(cone.cone_height, cell));
+  SlumpRows result;
+  result.base_rows = std::max(1, scene.foam.base_rows);
+  result.cone_rows = rows - 1;
+  result.air_rows = cells_over(cone.domain_height - cone.cone_height, cell);
+  result.cone_row_height = cone.cone_height / rows;
+  result.base_row_height = result.cone_row_height / result.base_rows;
+  result.air_row_height = (cone.domain_height - cone.cone_height) / result.air_rows;
+  return result;
+}
+
+}  // namespace flowrest::foam
