@@ -19,6 +19,7 @@ void add_exact(CLI::App& app) {
   struct Arguments {
     std::string scene, output;
     scenes::Overrides overrides;
+    bool thin_film = false;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -28,12 +29,17 @@ void add_exact(CLI::App& app) {
                       "Folder that receives a run for each solution (out/SCENE/exact)");
   command->add_option("--set", arguments->overrides.set, "Override a key: material.yield_stress=100")
       ->take_all();
+  command->add_flag("--thin-film", arguments->thin_film,
+                    "Add a slump's approach to rest in time, as a thin film of Bingham material");
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
     const auto scene = scenes::load_scene(arguments->scene, arguments->overrides);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
-    for (const auto& run : exact::write_exact_runs(scene, output)) {
+    auto written = exact::write_exact_runs(scene, output);
+    if (arguments->thin_film)
+      written.push_back(exact::write_film_run(scene, std::filesystem::path(output) / "thin-film"));
+    for (const auto& run : written) {
       fmt::print("{}\n  {}\n", run.summary, run.directory.string());
       json["runs"].push_back(run.directory.string());
     }

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "compare/exact/film.h"
 #include "compare/exact/solutions.h"
 #include "runs/depth.h"
 #include "runs/run_directory.h"
@@ -149,6 +151,44 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
 }
 
 }  // namespace
+
+ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory) {
+  if (scene.kind != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
+    refuse(scene, "a thin film spreads from a slump about its axis");
+  if (scene.thixotropy || scene.base != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
+      !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0))
+    refuse(scene,
+           "the film is of Bingham material without thixotropy, under gravity, on a base without slip");
+  constexpr int rings = 225;
+  const Bingham material = material_of(scene);
+  const auto& cone = scene.slump();
+  const double gravity = scene.forces.gravity;
+  SpreadingFilm film([&](double depth, double slope) { return film_flux(material, gravity, depth, slope); },
+                     cone.cone_radius_bottom, cone.volume(), cone.domain_radius, rings);
+  runs::RunWriter writer(directory, scene, "exact");
+  writer.info()["model"] = "bingham";
+  writer.info()["label"] = "thin film, Bingham";
+  writer.info()["source"] = "lubrication of a yield-stress film (Liu and Mei 1989), solved numerically";
+  writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3"});
+  const auto& output = scene.output;
+  const auto rows = static_cast<int>(std::ceil(scene.time.end / output.history_interval * (1.0 - 1e-12)));
+  const int rows_per_profile =
+      std::max(1, static_cast<int>(std::lround(output.profile_interval / output.history_interval)));
+  double spread = 0.0, height = 0.0;
+  for (int row = 0; row <= rows; ++row) {
+    film.advance_to(std::min(row * output.history_interval, scene.time.end));
+    const auto& state = film.state();
+    const auto radius = state.centres();
+    spread = runs::spread(radius, state.depth, spread_threshold);
+    height = runs::centre_depth(radius, state.depth);
+    writer.history(std::vector{state.time, 1000.0 * spread, 1000.0 * height, state.volume()});
+    if (row % rows_per_profile == 0 || row == rows) writer.profile(state.time, radius, state.depth);
+  }
+  writer.finish(runs::Status::end_time, "", "sound");
+  return {directory,
+          fmt::format("thin film, Bingham: spread {:.1f} mm at {:g} s, still growing; centre {:.1f} mm",
+                      1000.0 * spread, scene.time.end, 1000.0 * height)};
+}
 
 std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory) {
   if (std::filesystem::exists(directory / "run.json"))

@@ -15,9 +15,14 @@ struct ExactRun {
 };
 
 /// Writes every exact or asymptotic solution the scene has into a run directory of its own below `directory`:
-/// a slump leaves `leading-order` and `second-order` (a plane one only the first), a duct `steady`. Nothing
-/// is written of a scene that has none.
+/// a slump leaves `leading-order` and `second-order` (a plane one only the first), a duct
+/// `steady`. Nothing is written of a scene that has none.
 /// @throws runs::RunError where the scene has no such solution, saying why.
 std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory);
+
+/// The slump as a thin film of the scene's Bingham material, in time: what its own law lets it do, without
+/// inertia and without a grid over its depth.
+/// @throws runs::RunError where the scene is no such slump, saying why.
+ExactRun write_film_run(const scenes::Scene&, const std::filesystem::path& directory);
 
 }  // namespace flowrest::compare::exact

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "compare/exact/creep.h"
+#include "compare/exact/solutions.h"
+
+/// The slump as a thin film: how it approaches its arrested shape in time, without inertia.
+namespace flowrest::compare::exact {
+
+/// Flux of a film of Bingham material down a slope, per width (Liu and Mei 1989): with the base stress tau_b
+/// = rho g h s above tau0 it yields up to Y = h (1 - tau0/tau_b) and carries rho g s Y^2 (3 h - Y)/(6 eta).
+/// m2/s
+double film_flux(const Bingham&, double gravity, double depth, double slope);
+/// The same of a regularised fluid: depth times film_velocity, its integral by fewer points. m2/s
+double film_flux(const RegularisedFluid&, double density, double gravity, double depth, double slope);
+
+/// Depth and spread of an axisymmetric film as it spreads.
+struct FilmState {
+  double time = 0.0;          ///< s
+  std::vector<double> depth;  ///< m, of equal rings
+  double spacing = 0.0;       ///< m
+  std::vector<double> centres() const;
+  double volume() const;  ///< m3
+};
+
+/// h_t + (r q)_r / r = 0 on equal rings, implicit in time with steps that grow with time; q(depth, slope) is
+/// any of film_flux. Near rest Bingham's excess of stress over yield falls as 1/t, so the spread has a growth
+/// of the order of 1/t still to come and its speed falls only as 1/t^2: a thin film of yield-stress fluid is
+/// never at rest in finite time (Matson and Hogg 2007 found the like for dam breaks).
+class SpreadingFilm {
+ public:
+  using Flux = std::function<double(double depth, double slope)>;
+
+  /// A cylinder of `radius` and `volume` (m, m3) let go at time 0 on `rings` rings out to `domain_radius`.
+  SpreadingFilm(Flux, double radius, double volume, double domain_radius, int rings);
+
+  /// Goes on to `time`, s.
+  /// @throws std::runtime_error where a step finds no solution.
+  void advance_to(double time);
+  const FilmState& state() const { return state_; }
+
+ private:
+  bool try_step(double step, std::vector<double>& depth) const;
+  double face_flux(double inner, double outer) const;
+
+  Flux flux_;
+  FilmState state_;
+  double step_ = 1e-6;
+};
+
+}  // namespace flowrest::compare::exact

@@ -1,0 +1,128 @@
+#include "compare/exact/film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "compare/exact/exact_run.h"
+#include "runs/depth.h"
+#include "runs/run_directory.h"
+
+namespace flowrest::compare::exact {
+namespace {
+
+constexpr Bingham roussel{2300.0, 50.0, 50.0};
+constexpr double gravity = 9.81;
+constexpr double volume = 5.49779e-3;  // m3
+
+SpreadingFilm bingham_film(int rings = 225) {
+  return {[](double depth, double slope) { return film_flux(roussel, gravity, depth, slope); }, 0.1, volume,
+          0.45, rings};
+}
+
+SpreadingFilm regularised_film(RegularisedFluid::Law law, double time, int rings = 90) {
+  const RegularisedFluid fluid{law, roussel.yield_stress, roussel.plastic_viscosity, time};
+  return {[fluid](double depth, double slope) {
+            return film_flux(fluid, roussel.density, gravity, depth, slope);
+          },
+          0.1, volume, 0.45, rings};
+}
+
+double spread_at(SpreadingFilm& film, double time) {
+  film.advance_to(time);
+  return runs::spread(film.state().centres(), film.state().depth);
+}
+
+TEST(Film, AStiffRegularisedFluidFlowsAsBinghamDoes) {
+  const RegularisedFluid fluid{RegularisedFluid::Law::bi_viscous, 50.0, 50.0, 1e7};
+  for (const double slope : {0.05, 0.2, -0.4}) {
+    const double exact = film_flux(roussel, gravity, 0.05, slope);
+    EXPECT_NEAR(film_flux(fluid, 2300.0, gravity, 0.05, slope), exact, 1e-5 * std::abs(exact) + 1e-12)
+        << slope;
+  }
+  EXPECT_EQ(film_flux(roussel, gravity, 0.05, 0.04), 0.0);  // 45 Pa at the base
+}
+
+TEST(Film, ARegularisedFluidsFluxIsThatOfItsMeanVelocity) {
+  for (const auto law : {RegularisedFluid::Law::papanastasiou, RegularisedFluid::Law::bi_viscous})
+    for (const double time : {10.0, 1000.0}) {
+      const RegularisedFluid fluid{law, 50.0, 50.0, time};
+      for (const double slope : {0.01, 0.044, 0.0444, 0.06, 0.5}) {
+        const double exact = 0.05 * film_velocity(fluid, 0.05, 2300.0 * gravity * 0.05 * slope);
+        EXPECT_NEAR(film_flux(fluid, 2300.0, gravity, 0.05, slope), exact, 1e-4 * exact)
+            << time << " s, " << slope;
+      }
+    }
+}
+
+TEST(Film, ANewtonianFilmCarriesNusseltsFlux) {
+  const Bingham newtonian{1000.0, 0.0, 2.0};
+  EXPECT_DOUBLE_EQ(film_flux(newtonian, 10.0, 0.03, 0.1), 1000.0 * 10.0 * 0.1 * 2.7e-5 / 6.0);
+}
+
+TEST(Film, KeepsItsVolumeAndApproachesTheArrestedShapeFromBelow) {
+  auto film = bingham_film();
+  const auto arrested = leading_order_slump(roussel, gravity, volume);
+  double earlier = 0.0;
+  for (const double time : {1.0, 10.0, 60.0, 1000.0}) {
+    const double spread = spread_at(film, time);
+    EXPECT_GT(spread, earlier);
+    EXPECT_LT(spread, arrested.spread(0.003));
+    earlier = spread;
+  }
+  EXPECT_NEAR(earlier, arrested.spread(0.003), 0.002);
+  EXPECT_NEAR(film.state().volume(), volume, 1e-8 * volume);
+  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth), arrested.depth(0.0), 5e-4);
+}
+
+/// The growth still to come falls as 1/t: what the centre sinks from 50 to 100 s is four times what it sinks
+/// from 200 to 400 s.
+TEST(Film, IsNeverAtRestInFiniteTime) {
+  auto film = bingham_film();
+  const auto centre = [&](double time) {
+    film.advance_to(time);
+    return film.state().depth.front();
+  };
+  const double at_50 = centre(50.0), at_100 = centre(100.0), at_200 = centre(200.0), at_400 = centre(400.0);
+  const double early = at_50 - at_100, late = at_200 - at_400;
+  EXPECT_NEAR(std::log(early / late) / std::log(4.0), 1.0, 0.15);
+}
+
+/// Refining the rings moves the spread by less than a ring.
+TEST(Film, ConvergesWithItsRings) {
+  auto coarse = bingham_film(90), fine = bingham_film(360);
+  EXPECT_NEAR(spread_at(coarse, 60.0), spread_at(fine, 60.0), 0.003);
+  EXPECT_NEAR(spread_at(fine, 60.0), 0.585, 0.002);
+}
+
+TEST(Film, ARegularisedOnePassesTheArrestedShapeTheSoonerTheSofterItIs) {
+  auto exact = bingham_film(90);
+  auto soft = regularised_film(RegularisedFluid::Law::bi_viscous, 10.0);
+  auto stiff = regularised_film(RegularisedFluid::Law::bi_viscous, 1000.0);
+  const double at_rest = spread_at(exact, 30.0);
+  EXPECT_NEAR(spread_at(stiff, 30.0), at_rest, 0.002);
+  EXPECT_GT(spread_at(soft, 30.0), at_rest + 0.015);
+}
+
+TEST(Film, LeavesARunOfWhatAScenesMaterialDoes) {
+  const auto directory = std::filesystem::temp_directory_path() / "flowrest-film-test";
+  std::filesystem::remove_all(directory);
+  const auto scene =
+      scenes::load_scene("roussel-slump", {{"time.end=2", "output.history_interval=0.5"}, std::nullopt});
+  write_film_run(scene, directory);
+  const auto run = runs::read_run(directory);
+  EXPECT_EQ(run.info["status"], "end-time");
+  ASSERT_EQ(run.history.rows(), 5U);
+  EXPECT_NEAR(run.history.at("spread_mm").back(), 488.6, 2.0);
+  EXPECT_NEAR(run.history.at("volume_m3").back(), scene.slump().volume(), 1e-9);
+  EXPECT_DOUBLE_EQ(run.profiles.back().time, 2.0);
+  std::filesystem::remove_all(directory);
+  for (const char* set : {"walls.base=slip", "geometry.dimension=plane"})
+    EXPECT_THROW(write_film_run(scenes::load_scene("roussel-slump", {{set}, std::nullopt}), directory),
+                 runs::RunError);
+  EXPECT_FALSE(std::filesystem::exists(directory));
+}
+
+}  // namespace
+}  // namespace flowrest::compare::exact
