@@ -155,7 +155,7 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
 ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory) {
   if (scene.kind != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
     refuse(scene, "a thin film spreads from a slump about its axis");
-  if (scene.thixotropy || scene.base != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
+  if (scene.thixotropy || scene.base.law != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
       !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0))
     refuse(scene,
            "the film is of Bingham material without thixotropy, under gravity, on a base without slip");
