@@ -187,7 +187,7 @@ struct Mpm {
   double flip_relaxation_time = 0.05;          ///< s, of `linear-flip`
   std::optional<double> apic_relaxation_time;  ///< s, of `quadratic-apic`: its transfer acts once over this
   /// Share of an overlap of particles taken back per unit strain; 1 for `quadratic-apic`, 0.3 for
-  /// `linear-flip`, whose filling is noisier, 0 for `paper`.
+  /// `linear-flip`, whose filling is noisier, 0 for `paper` and in ducts.
   std::optional<double> density_correction;
   bool operator==(const Mpm&) const = default;
 };

@@ -23,9 +23,13 @@ Law law_of(scenes::Model model, bool thixotropic) {
   return Law::newtonian;
 }
 
-double density_correction(const scenes::Mpm& mpm) {
+double density_correction(const scenes::Scene& scene) {
+  const auto& mpm = scene.mpm;
   if (mpm.scheme == scenes::Scheme::paper) return 0.0;
-  return mpm.density_correction.value_or(mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3);
+  // A duct has no free surface to make room at: its particles would only shrink, and with them what resists.
+  const bool closed = scene.kind == scenes::Kind::duct;
+  const double usual = mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3;
+  return mpm.density_correction.value_or(closed ? 0.0 : usual);
 }
 
 }  // namespace
@@ -75,7 +79,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.density = m.density;
   // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
-  s.density_correction = density_correction(scene.mpm);
+  s.density_correction = density_correction(scene);
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);

@@ -144,6 +144,18 @@ TEST_F(Duct, QuadraticApicDoesNotDependOnTheStep) {
   EXPECT_LE(std::sqrt(difference / scale), 1e-3);
 }
 
+TEST_F(Duct, InSinglePrecisionItsParticlesKeepTheirVolumeAndSpeed) {
+  // Round-off disturbs the lattice. While overlaps were taken back in ducts too, the particles shrank on that
+  // noise, with nowhere to expand to, and the plug ran 3 % too fast: L2 3.6e-2. Measured 4.8e-3.
+  const double yield = 100.0;
+  const auto run = run_and_read(duct({setting("material.yield_stress", yield), "mpm.precision=float",
+                                      "mpm.cell=0.0125", "time.end=12", "output.checkpoint_interval=12"}),
+                                "float");
+  const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+  std::printf("    L2 %.2g\n", error);
+  EXPECT_LT(error, 1e-2);
+}
+
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
   // Measured 4.6e-4 at 10 Pa and 7.0e-4 at 200 Pa. How large a step the lattice bears before it breaks up
   // (1e-2 and more) depends on the plug: at 50, 100 and 200 Pa it holds at CFL 0.1 and not at 0.3, at 10 Pa
