@@ -2,6 +2,7 @@
 
 #include "addToRunTimeSelectionTable.H"
 #include "basicSymmetryFvPatchFields.H"
+#include "foamCases/rheology/coulomb_friction.h"
 #include "fvcSurfaceIntegrate.H"
 #include "fvmLaplacian.H"
 #include "zeroGradientFvPatchFields.H"
@@ -124,8 +125,18 @@ void elastoViscoplasticBingham::carry() const {
   }
 }
 
-elastoViscoplasticBingham::Response elastoViscoplasticBingham::respond(const volTensorField& gradient) const {
+elastoViscoplasticBingham::Returned elastoViscoplasticBingham::relaxed(const symmTensor& carried,
+                                                                       const tensor& gradient,
+                                                                       scalar flocculation) const {
   const scalar dt = runTime_.deltaTValue(), shear = shear_modulus_.value() * dt;
+  const symmTensor trial = carried + 2.0 * shear * dev(symm(gradient));  // Yu et al. 2026, Eq. 37
+  const scalar tau = std::sqrt(0.5) * mag(trial);
+  const auto back = flowrest::rheology::relax(law_, tau, shear, dt, flocculation);
+  const scalar kept = tau > VSMALL ? back.stress / tau : 1.0;
+  return {kept * trial, back.rate, kept * shear, back.flocculation};
+}
+
+elastoViscoplasticBingham::Response elastoViscoplasticBingham::respond(const volTensorField& gradient) const {
   Response response{like<volSymmTensorField>("responseStress", mesh_, Zero, dimPressure, calculated),
                     like<volScalarField>("responseRate", mesh_, 0.0, dimless / dimTime, calculated),
                     like<volScalarField>("responseViscosity", mesh_, 0.0, dimDynamicViscosity, calculated),
@@ -134,15 +145,11 @@ elastoViscoplasticBingham::Response elastoViscoplasticBingham::respond(const vol
                         const scalarField* flocculations, symmTensorField& stress, scalarField& rate,
                         scalarField& viscosity, scalarField& flocculation) {
     forAll(stress, i) {
-      const symmTensor trial = carried[i] + 2.0 * shear * dev(symm(gradients[i]));  // Yu et al. 2026, Eq. 37
-      const scalar tau = std::sqrt(0.5) * mag(trial);
-      const auto relaxed =
-          flowrest::rheology::relax(law_, tau, shear, dt, flocculations ? (*flocculations)[i] : 0.0);
-      const scalar kept = tau > VSMALL ? relaxed.stress / tau : 1.0;
-      stress[i] = kept * trial;
-      rate[i] = relaxed.rate;
-      viscosity[i] = kept * shear;
-      flocculation[i] = relaxed.flocculation;
+      const Returned back = relaxed(carried[i], gradients[i], flocculations ? (*flocculations)[i] : 0.0);
+      stress[i] = back.stress;
+      rate[i] = back.rate;
+      viscosity[i] = back.viscosity;
+      flocculation[i] = back.flocculation;
     }
   };
   const auto* flocculation = flocculation_ ? &flocculation_->field() : nullptr;
@@ -159,7 +166,91 @@ elastoViscoplasticBingham::Response elastoViscoplasticBingham::respond(const vol
   }
   response.stress.correctBoundaryConditions();
   response.viscosity.correctBoundaryConditions();
+  hold_to_friction(response);
   return response;
+}
+
+PtrList<scalarField> elastoViscoplasticBingham::friction_limits() const {
+  PtrList<scalarField> limits(mesh_.boundary().size());
+  tmp<volScalarField> weight;
+  forAll(limits, p) {
+    const auto* wall =
+        dynamic_cast<const coulombFrictionFvPatchVectorField*>(&phase_.velocity().boundaryField()[p]);
+    if (wall == nullptr) continue;
+    if (!weight.valid()) weight = phase_.weight(rules_);
+    const scalarField& share = weight().boundaryField()[p];
+    const vectorField normal(mesh_.boundary()[p].nf());
+    const scalarField pull((normal & stress_.boundaryField()[p]) & normal);
+    limits.set(p, new scalarField(wall->limit(share * pull) / max(share, wetted)));
+  }
+  return limits;
+}
+
+void elastoViscoplasticBingham::slide(volVectorField& velocity) const {
+  constexpr int most_rounds = 20;
+  constexpr scalar close_enough = 1e-3;  // of the limit
+  const PtrList<scalarField> limits = friction_limits();
+  tmp<volTensorField> gradient;
+  forAll(limits, p) {
+    if (!limits.set(p)) continue;
+    auto& wall = refCast<coulombFrictionFvPatchVectorField>(velocity.boundaryFieldRef()[p]);
+    if (!gradient.valid()) gradient = phase_.velocity_gradient(rules_.strain_rate);
+    const scalarField& most = limits[p];
+    const vectorField inside(wall.patchInternalField()), normals(wall.patch().nf());
+    const scalarField& by_distance = wall.patch().deltaCoeffs();
+    const labelUList& cells = wall.patch().faceCells();
+    scalarField& fraction = wall.valueFraction();
+    forAll(fraction, face) {
+      const vector& n = normals[face];
+      const vector onto = n * (n & inside[face]), along = inside[face] - onto;
+      const tensor& in_cell = gradient().primitiveField()[cells[face]];
+      const symmTensor& carried = carried_.boundaryField()[p][face];
+      const scalar flocculation = flocculation_ ? flocculation_->field().boundaryField()[p][face] : 0.0;
+      // Shear stress on the wall over the limit where the wall holds the part `part` of the velocity.
+      const auto excess = [&](scalar part) {
+        const vector slope = -by_distance[face] * (onto + part * along);
+        const vector traction =
+            n & relaxed(carried, in_cell + n * (slope - (n & in_cell)), flocculation).stress;
+        return mag(traction - n * (n & traction)) - most[face];
+      };
+      scalar low = 0.0, high = 1.0, below = excess(0.0), above = excess(1.0);
+      fraction[face] = above <= 0.0 ? 1.0 : 0.0;
+      if (above <= 0.0 || below >= 0.0) continue;
+      // Regula falsi as the Illinois algorithm has it.
+      for (int round = 0; round < most_rounds && high - low > SMALL; ++round) {
+        const scalar part = (low * above - high * below) / (above - below), here = excess(part);
+        fraction[face] = part;
+        if (mag(here) <= close_enough * most[face]) break;
+        if (here > 0.0) {
+          high = part;
+          above = here;
+          below *= 0.5;
+        } else {
+          low = part;
+          below = here;
+          above *= 0.5;
+        }
+      }
+    }
+    wall.evaluate();
+  }
+}
+
+/// Shear stress that a wall no longer gives, because the pressure on it has fallen, is gone.
+void elastoViscoplasticBingham::hold_to_friction(Response& response) const {
+  const PtrList<scalarField> limits = friction_limits();
+  forAll(limits, p) {
+    if (!limits.set(p)) continue;
+    const scalarField& most = limits[p];
+    const vectorField normals(mesh_.boundary()[p].nf());
+    symmTensorField& stress = response.stress.boundaryFieldRef()[p];
+    forAll(stress, face) {
+      const vector& n = normals[face];
+      const vector traction = n & stress[face], along = traction - n * (n & traction);
+      const scalar size = mag(along);
+      if (size > most[face]) stress[face] += twoSymm(n * ((most[face] / size - 1.0) * along));
+    }
+  }
 }
 
 /// Concrete pulls on a face only as far as there is concrete on both sides: on the one that bounds it, it
@@ -172,6 +263,7 @@ surfaceScalarField elastoViscoplasticBingham::face_weight() const {
 
 tmp<fvVectorMatrix> elastoViscoplasticBingham::minus_divergence(volVectorField& velocity) const {
   carry();
+  slide(velocity);
   const auto gradient = phase_.velocity_gradient(rules_.strain_rate);
   const Response response = respond(gradient());
   const surfaceScalarField weight(face_weight());
@@ -209,6 +301,7 @@ tmp<volSymmTensorField> elastoViscoplasticBingham::devRhoReff() const {
 
 void elastoViscoplasticBingham::correct() {
   laminarModel::correct();
+  slide(const_cast<volVectorField&>(phase_.velocity()));
   const Response response = respond(phase_.velocity_gradient(rules_.strain_rate)());
   stress_ == response.stress;
   plastic_rate_ == response.rate;

@@ -24,6 +24,10 @@ namespace laminarModels {
 /// cells. The two cancel as the velocity settles (so a state at rest is one of the law alone), make elastic
 /// waves implicit (no limit dx / sqrt(G / rho) on the step) and tie neighbouring cells' velocities together.
 ///
+/// Walls with friction (coulombFriction) slide where the law would have them take more shear stress than they
+/// give: the part of the velocity they then follow is the one that makes the wall's stress that limit, and
+/// what a wall remembers never passes it.
+///
 /// Coefficients: `phase` (concrete unless given), `rho` (kg/m3), `youngsModulus` (Pa), `poissonRatio`,
 /// `yieldStress` (Pa), `plasticViscosity` (Pa s), those of flowrest::rheology::PhaseRules, `faceWeight`
 /// (harmonic | linear) and the optional `thixotropy` of flowrest::rheology::Flocculation. Fields: `stress`
@@ -57,6 +61,17 @@ class elastoViscoplasticBingham : public incompressible::laminarModel {
   /// The stress as the step finds it: carried and turned; from the old time however often it is called.
   void carry() const;
   Response respond(const volTensorField& gradient) const;
+  /// The law at a place whose trial stress is known.
+  struct Returned {
+    symmTensor stress;
+    scalar rate, viscosity, flocculation;
+  };
+  Returned relaxed(const symmTensor& carried, const tensor& gradient, scalar flocculation) const;
+  /// Lets walls with friction slide as the velocity and what is carried ask for; holds what they return.
+  void slide(volVectorField& velocity) const;
+  void hold_to_friction(Response&) const;
+  /// Largest shear stress in the concrete on each wall with friction, Pa; nothing for other patches.
+  PtrList<scalarField> friction_limits() const;
   surfaceScalarField face_weight() const;
   /// minus the divergence of the stress, Pa/m times volume.
   tmp<fvVectorMatrix> minus_divergence(volVectorField& velocity) const;
