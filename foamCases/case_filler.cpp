@@ -150,13 +150,19 @@ std::string phase_parameters(const Scene& scene) {
 
 const char* wall(const Scene& scene) { return scene.base.law == scenes::Wall::slip ? "slip" : "noSlip"; }
 
+/// The velocity's condition on a wall as a patch takes it in.
+std::string wall_condition(const Scene& scene) {
+  if (scene.base.law != scenes::Wall::friction) return fmt::format("{{ type {}; }}", wall(scene));
+  return fmt::format("{{ type coulombFriction; friction {}; }}", scene.base.friction);
+}
+
 std::string slump_parameters(const Scene& scene) {
   return mesh_parameters(scene) + time_parameters(scene) +
          fmt::format(
              "\n// Forces and walls.\n"
              "gravity             (0 0 {});  // m/s2\n"
-             "baseWall            {};\n",
-             -scene.forces.gravity, wall(scene));
+             "baseWall            {}\n",
+             -scene.forces.gravity, wall_condition(scene));
 }
 
 /// A source holds for the steps that end within its times; a step that ends on a change still has the old

@@ -85,7 +85,7 @@ TEST(CaseFiller, TakesEveryNumberFromTheScene) {
                      "output.history_interval=0.5", "output.snapshot_interval=2"});
   const auto values = entries(scene_parameters(scene, false));
   const auto number = [&](const std::string& key) { return std::stod(values.at(key)); };
-  EXPECT_EQ(values.at("baseWall"), "slip");
+  EXPECT_EQ(values.at("baseWall"), "{ type slip");
   EXPECT_EQ(values.at("gravity"), "(0 0 -1.6)");
   EXPECT_EQ(values.at("transportModel"), "HerschelBulkley");
   EXPECT_DOUBLE_EQ(number("nu0"), (20.0 + 80.0 / 0.05) / 2000.0);

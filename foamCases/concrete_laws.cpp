@@ -118,7 +118,7 @@ std::string air_rises(const Scene& scene, bool plug_in) {
 
 std::string stress_model(const Scene& scene, bool plug_in) {
   const std::string none = "\nconcreteStress\n{\n}\n";
-  if (!plug_in) return built_in_viscosity(scene.material) + none;
+  if (!plug_in || scene.material.model == Model::newtonian) return built_in_viscosity(scene.material) + none;
   if (scene.material.model == Model::elasto_viscoplastic) return plug_in_stress(scene);
   return plug_in_viscosity(scene) + none;
 }
@@ -127,7 +127,7 @@ std::string stress_model(const Scene& scene, bool plug_in) {
 
 std::string concrete_laws(const Scene& scene, bool plug_in) {
   std::string sampled, state;
-  if (plug_in && scene.thixotropy) sampled += " flocculation";
+  if (plug_in && scene.thixotropy && scene.material.model != Model::newtonian) sampled += " flocculation";
   if (scene.material.model == Model::elasto_viscoplastic) {
     sampled += " plasticShearRate";
     state += " stress";

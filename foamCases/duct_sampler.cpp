@@ -17,7 +17,7 @@ DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::Ru
     height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
   std::vector<std::string> columns{
       "time_s", "plug_velocity_m_s", "mean_velocity_m_s", "initial_residual_U", "courant_max", "time_step_s"};
-  if (scene.thixotropy) columns.push_back("flocculation_mean");
+  if (thixotropic()) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
 
@@ -38,12 +38,9 @@ void DuctSampler::sample(double time, const ReadField& read) {
     const SolverStep steps = since_last_row(time);
     std::vector<double> row{time,          plug_velocity_, mean_velocity_, steps.initial_residual_u,
                             steps.courant, steps.time_step};
-    if (scene().thixotropy) {
-      const auto flocculation = time > 0.0
-                                    ? read("flocculation", 1)
-                                    : std::vector<double>(cells(), scene().thixotropy->initial_flocculation);
-      row.push_back(std::accumulate(flocculation.begin(), flocculation.end(), 0.0) /
-                    static_cast<double>(cells()));
+    if (thixotropic()) {
+      const auto state = flocculation(time, read);
+      row.push_back(std::accumulate(state.begin(), state.end(), 0.0) / static_cast<double>(cells()));
     }
     writer().history(row);
   }

@@ -59,20 +59,6 @@ fs::path needed_program(const std::string& name) {
       "{} is not on the PATH: `flowrest foam` needs OpenFOAM (Debian: apt-get install openfoam)", name));
 }
 
-/// @throws SceneError
-void refuse_what_no_case_has(const scenes::Scene& scene) {
-  const auto refuse = [&](const std::string& what) {
-    throw scenes::SceneError(
-        fmt::format("{}: OpenFOAM has no {} yet; allowed: slumps and ducts between walls without "
-                    "friction, without a mould",
-                    scene.path.string(), what));
-  };
-  if (scene.kind != scenes::Kind::slump && scene.kind != scenes::Kind::duct)
-    refuse("case of a " + scenes::to_string(scene.kind));
-  if (scene.base.law == scenes::Wall::friction) refuse("wall with friction");
-  if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity) refuse("mould that is lifted");
-}
-
 Programs needed_programs(const scenes::Scene& scene, int ranks) {
   Programs programs;
   programs.prepare.push_back({needed_program("blockMesh"), {}});
@@ -111,6 +97,13 @@ std::map<std::string, std::string> openfoam_environment() {
 /// Components of the velocity that a case solves for: those whose residuals tell of noise.
 std::string components(const scenes::Scene& scene) {
   return scene.geometry.dimension == scenes::Dimension::quarter ? "xyz" : "xz";
+}
+
+/// Which of the scene's walls the case does not have, in words; empty where it has them all.
+std::string walls_differ(const scenes::Scene& scene) {
+  if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity)
+    return "no mould: the cone is released at once";
+  return "";
 }
 
 /// How the steps are bounded, in words.
@@ -181,6 +174,7 @@ class CaseRun {
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();
     info["ranks"] = options_.ranks;
+    if (const std::string differ = walls_differ(scene_); !differ.empty()) info["walls_differ"] = differ;
     info["resolved_toml"] = scenes::resolved_toml(scene_);
     writer_.write();
   }
@@ -415,7 +409,6 @@ RunOutcome finished(const RunOutcome& outcome, const RunOptions& options) {
 
 RunOutcome run_scene(const scenes::Scene& given, const RunOptions& options) {
   // What is missing is said before anything is written.
-  refuse_what_no_case_has(given);
   const scenes::Scene scene = settled(given, plug_in_for(given).has_value());
   check_supported(scene);
   check_ranks(scene, options.ranks);

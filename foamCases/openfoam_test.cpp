@@ -189,6 +189,31 @@ class PlugIn : public OpenFoam {
   }
 };
 
+/// Friction that nothing overcomes is a wall without slip, and none at all is a wall that slips.
+TEST_F(PlugIn, FrictionLiesBetweenStickAndSlip) {
+  for (const char* model : {"papanastasiou", "elasto-viscoplastic"}) {
+    const auto spread = [&](const std::string& wall) {
+      const auto result =
+          run(roussel_slump(model, {"foam.cell=0.03", "time.end=0.25", "walls.base=" + wall}));
+      return result.history.at("spread_mm").back();
+    };
+    const double stick = spread("no-slip"), slip = spread("slip"), rough = spread("{friction=0.3}");
+    EXPECT_NEAR(spread("{friction=10}"), stick, 1.0) << model;
+    EXPECT_NEAR(spread("{friction=0}"), slip, 3.0) << model;
+    EXPECT_GT(rough, stick + 3.0) << model;
+    EXPECT_LT(rough, slip - 3.0) << model;
+  }
+}
+
+/// The case has no mould to lift, and says so.
+TEST_F(PlugIn, AConeInAMouldIsReleasedAtOnce) {
+  const auto result = run(scenes::load_scene(
+      "mix-a-slump-sf0", {{"foam.cell=0.03", "time.end=0.2"}, scenes::Model::elasto_viscoplastic}));
+  EXPECT_EQ(result.info["walls_differ"], "no mould: the cone is released at once");
+  EXPECT_GT(result.history.at("spread_mm").back(), 300.0);
+  EXPECT_GT(result.history.at("flocculation_mean").back(), 0.0);
+}
+
 /// Two implementations of each law: OpenFOAM's, given a table or a capped viscosity, and the plug-in's.
 TEST_F(PlugIn, AgreesWithOpenFoamsOwnLaws) {
   for (const char* model : {"papanastasiou", "bi-viscous"}) {

@@ -18,8 +18,9 @@ namespace {
 constexpr const char* library = "libflowrestRheology.so";
 
 std::string law(const Scene& scene) {
-  return fmt::format("model {}{}", scenes::to_string(scene.material.model),
-                     scene.thixotropy ? " with [thixotropy]" : "");
+  return fmt::format("model {}{}{}", scenes::to_string(scene.material.model),
+                     scene.thixotropy ? " with [thixotropy]" : "",
+                     scene.base.law == scenes::Wall::friction ? " on walls with friction" : "");
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ Scene settled(Scene scene, bool plug_in) {
 }
 
 bool needs_plug_in(const Scene& scene) {
-  return scene.material.model == Model::elasto_viscoplastic ||
+  return scene.base.law == scenes::Wall::friction || scene.material.model == Model::elasto_viscoplastic ||
          (scene.thixotropy && scene.material.model != Model::newtonian);
 }
 
@@ -57,10 +58,10 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
   if (scene.foam.laws == FoamLaws::built_in) {
     if (!needs_plug_in(scene)) return std::nullopt;
     throw scenes::SceneError(fmt::format(
-        "{}: {}: OpenFOAM has no such law of its own, but foam.laws is built-in; allowed: plug-in or best",
+        "{}: {}: OpenFOAM has nothing such of its own, but foam.laws is built-in; allowed: plug-in or best",
         scene.path.string(), law(scene)));
   }
-  if (scene.material.model == Model::newtonian) return std::nullopt;
+  if (scene.material.model == Model::newtonian && !needed) return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)
     throw runs::MissingProgram(fmt::format(

@@ -22,7 +22,7 @@ std::optional<std::filesystem::path> plug_in_for(const scenes::Scene&);
 /// where it does not say.
 scenes::Scene settled(scenes::Scene, bool plug_in);
 
-/// Whether a scene's law is one that only the plug-in has.
+/// Whether a scene's law or walls are such as only the plug-in has.
 bool needs_plug_in(const scenes::Scene&);
 
 }  // namespace flowrest::foam

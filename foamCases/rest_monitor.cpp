@@ -15,7 +15,7 @@ double time_to_trust_rest(const scenes::Scene& scene) {
   double driving = scene.forces.gravity;
   for (const auto& [time, force] : scene.forces.body_force)
     driving = std::max(driving, std::abs(force) / scene.material.density);
-  const double length = scene.kind == scenes::Kind::slump ? scene.slump().cone_height : scene.duct().height;
+  const double length = scene.body_height();
   return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
 }
 

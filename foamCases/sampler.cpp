@@ -49,6 +49,15 @@ void Sampler::continue_from(const runs::Table& history) {
   next_profile_ = next(scene_.output.profile_interval);
 }
 
+bool Sampler::thixotropic() const {
+  return scene_.thixotropy && scene_.material.model != scenes::Model::newtonian;
+}
+
+std::vector<double> Sampler::flocculation(double time, const ReadField& read) const {
+  return time > 0.0 ? read("flocculation", 1)
+                    : std::vector<double>(cells(), scene_.thixotropy->initial_flocculation);
+}
+
 bool Sampler::history_is_due(double time) {
   return is_due(time, scene_.output.history_interval, next_history_);
 }

@@ -54,6 +54,10 @@ class Sampler {
   runs::RunWriter& writer() { return writer_; }
   /// The largest residual and Courant number, and the last step, since the last row.
   SolverStep since_last_row(double time);
+  /// Whether concrete carries flocculation, which a Newtonian fluid has no use for.
+  bool thixotropic() const;
+  /// The field of the flocculation, as it is at the start while the solver has not written it yet.
+  std::vector<double> flocculation(double time, const ReadField&) const;
   bool history_is_due(double time);
   bool profile_is_due(double time);
 

@@ -35,19 +35,14 @@ SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::
                                    "time_step_s",
                                    "trapped_air_m3",
                                    "volume_error"};
-  if (scene.thixotropy) columns.push_back("flocculation_mean");
+  if (thixotropic()) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
 
 void SlumpSampler::sample(double time, const ReadField& read) {
   const SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
-  if (scene().thixotropy) {
-    // At the start the solver has not yet written the field: it is what the scene says.
-    const auto flocculation = time > 0.0
-                                  ? read("flocculation", 1)
-                                  : std::vector<double>(cells(), scene().thixotropy->initial_flocculation);
-    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, flocculation);
-  }
+  if (thixotropic())
+    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, flocculation(time, read));
   const auto gauges = mesh_->gauge(fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   if (time == 0.0) state_.first_volume = gauges.volume;
   state_.time = time;
@@ -86,7 +81,7 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
                           steps.time_step,
                           gauges.trapped_air,
                           gauges.volume / state_.first_volume - 1.0};
-  if (scene().thixotropy) row.push_back(state_.flocculation);
+  if (thixotropic()) row.push_back(state_.flocculation);
   writer().history(row);
 }
 

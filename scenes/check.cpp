@@ -187,14 +187,6 @@ void check_foam_can(const Case& c) {
     c.fault("runs.foam", fmt::format("runs.foam names a run, but OpenFOAM has no case of a {} yet; allowed: "
                                      "runs.foam = [] for it",
                                      to_string(c.scene().kind)));
-  if (c.scene().base.law == Wall::friction)
-    c.fault("runs.foam",
-            "runs.foam names a run, but OpenFOAM has no wall with friction yet; allowed: "
-            "runs.foam = [], or walls.base no-slip or slip");
-  if (c.scene().kind == Kind::slump && c.scene().slump().mould_lift_velocity)
-    c.fault("runs.foam",
-            "runs.foam names a run, but OpenFOAM has no mould that is lifted yet; allowed: "
-            "runs.foam = [], or no geometry.mould_lift_velocity");
 }
 
 void check_models(const Case& c) {

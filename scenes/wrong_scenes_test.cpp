@@ -142,14 +142,6 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:20:21: walls.base has a friction that must be a number, not a string"},
     {"FrictionMisspelt", slump_text, "base = \"no-slip\"", "base = { fricton = 0.3 }",
      "wrong.toml:20:20: walls.base has an unknown entry \"fricton\"; allowed: friction"},
-    {"FrictionInOpenFoam", slump_text, "base = \"no-slip\"", "base = { friction = 0.3 }",
-     "wrong.toml:3:48: runs.foam names a run, but OpenFOAM has no wall with friction yet; allowed: runs.foam "
-     "= [], "
-     "or walls.base no-slip or slip"},
-    {"MouldInOpenFoam", slump_text, "domain_height = 0.35",
-     "domain_height = 0.35\nmould_lift_velocity = 0.15",
-     "wrong.toml:3:48: runs.foam names a run, but OpenFOAM has no mould that is lifted yet; allowed: "
-     "runs.foam = []"},
     {"MouldThatStandsStill", slump_text, "domain_height = 0.35",
      "domain_height = 0.35\nmould_lift_velocity = 0.0",
      "wrong.toml:11:23: geometry.mould_lift_velocity is 0; allowed: greater than 0, at most 1000"},
