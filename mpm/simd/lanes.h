@@ -30,19 +30,16 @@ struct RecordOf<double, 8> {
 template <class T, int Values = 4>
 using Record = typename RecordOf<T, Values>::type;
 
-/// As many particles as one register of this instruction set holds.
-template <class T>
-struct LanesOf;
-template <>
-struct LanesOf<float> {
-  typedef float type __attribute__((vector_size(FLOWREST_LANE_BYTES), aligned(4), may_alias));
+/// As many particles as a register of `Bytes` holds.
+template <class T, int Bytes>
+struct LanesOf {
+  typedef T type __attribute__((vector_size(Bytes), aligned(sizeof(T)), may_alias));
 };
-template <>
-struct LanesOf<double> {
-  typedef double type __attribute__((vector_size(FLOWREST_LANE_BYTES), aligned(8), may_alias));
-};
-template <class T>
-using Lanes = typename LanesOf<T>::type;
+/// The widest register of this instruction set, and one that a few particles fill better.
+constexpr int lane_bytes = FLOWREST_LANE_BYTES;
+constexpr int narrow_lane_bytes = lane_bytes > 32 ? 32 : lane_bytes;
+template <class T, int Bytes = lane_bytes>
+using Lanes = typename LanesOf<T, Bytes>::type;
 
 template <int Values = 4, class T>
 FLOWREST_INLINE Record<T, Values>& record_at(T* p) {
@@ -52,13 +49,13 @@ template <int Values = 4, class T>
 FLOWREST_INLINE const Record<T, Values>& record_at(const T* p) {
   return *reinterpret_cast<const Record<T, Values>*>(p);
 }
-template <class T>
-FLOWREST_INLINE Lanes<T>& lanes_at(T* p) {
-  return *reinterpret_cast<Lanes<T>*>(p);
+template <int Bytes = lane_bytes, class T>
+FLOWREST_INLINE Lanes<T, Bytes>& lanes_at(T* p) {
+  return *reinterpret_cast<Lanes<T, Bytes>*>(p);
 }
-template <class T>
-FLOWREST_INLINE const Lanes<T>& lanes_at(const T* p) {
-  return *reinterpret_cast<const Lanes<T>*>(p);
+template <int Bytes = lane_bytes, class T>
+FLOWREST_INLINE const Lanes<T, Bytes>& lanes_at(const T* p) {
+  return *reinterpret_cast<const Lanes<T, Bytes>*>(p);
 }
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

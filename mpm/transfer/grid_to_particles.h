@@ -67,18 +67,13 @@ void correct_density(const StepParameters<T>& step, const Strain<T, Dim>& s, con
     s.dilatation[q] -= step.density_correction * s.rate[q] * maximum(filling[q] - T(1), T(0));
 }
 
-/// Velocity gradients and averaged dilatation of a tile, from gradients per cell.
+/// Strain and averaged dilatation of a tile from its velocity gradients.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
                  const Gathered<T, Dim>& gathered, const T* mass, const T* filling, Strain<T, Dim>& s) {
   const int count = tile.count;
-  const T per_cell = T(1) / step.cell;
   for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      T* g = s.gradient[i][j] = gathered.gradient[i][j];
-#pragma omp simd
-      for (int q = 0; q < count; ++q) g[q] *= per_cell;
-    }
+    for (int j = 0; j < Dim; ++j) s.gradient[i][j] = gathered.gradient[i][j];
   s.dilatation = tile.fresh();
   s.hoop = nullptr;
   T* radial = nullptr;
@@ -196,7 +191,7 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
   sums.largest_speed_squared = maximum(sums.largest_speed_squared, static_cast<double>(largest_speed));
 }
 
-/// Strain, stress and motion of a tile whose velocity gradients per cell are gathered.
+/// Strain, stress and motion of a tile whose velocity gradients are gathered.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
                      const T* arena, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection,
@@ -210,55 +205,75 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
   move_particles<T, Dim, Shape>(step, particles, tile, x, advection, mass);
 }
 
+/// Whether a step keeps anything of what particles brought, see relax.
+enum class Own { forgotten, kept };
+
 /// The particles' own velocities after the step, v <- keep (v + dv) + (1 - keep) v_grid, where
 /// `increment` is gathered from v_grid - keep * (v_grid before the step's forces).
-template <class T, int Dim>
-void relax_velocities(const StepParameters<T>& step, const T* const* increment, T* const* v, int count) {
-  for (int c = 0; c < Dim; ++c) {
+template <class T>
+void relax(T keep, const T* increment, T* own, int count) {
 #pragma omp simd
-    for (int q = 0; q < count; ++q) v[c][q] = step.keep * v[c][q] + increment[c][q];
-  }
+  for (int q = 0; q < count; ++q) own[q] = keep * own[q] + increment[q];
 }
 
 /// APIC whose transfer acts at a rate: velocities and affine parts both keep the share `keep` of their own,
 /// so that what the transfer smooths a second does not depend on the step. Zero keeps nothing: APIC as
-/// published (Jiang et al. 2015).
-template <class T, int Dim, bool Axisymmetric>
-void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
-                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
-  alignas(64) T arena[nodes_per_arena<Dim> * node_values];
-  load_arena<T, Dim, Quadratic>(step, block, nodes, arena);
+/// published (Jiang et al. 2015). Then one field gives the motion and what particles carry on.
+template <class T, int Dim, bool Axisymmetric, Own Kept>
+void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
+                const T* arena, const Workspace<T>& workspace) {
+  constexpr bool kept = Kept == Own::kept;
+  constexpr Wanted motion_wanted{true, true, !kept}, increment_wanted{true, false, true};
+  const T per_cell = T(1) / step.cell;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
-    T *x[Dim], *v[Dim];
+    T* x[Dim];
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
-    for (int a = 0; a < Dim; ++a) v[a] = tile.open(particles.velocity[a]);
-    Weights<T, Dim, Quadratic> weights;
-    weights.make(tile, x);
-    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, true, true, false);
-    const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, true, false, true);
+    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, motion_wanted);
+    const Gathered<T, Dim> increment = kept ? room_for_gathered<T, Dim>(tile, increment_wanted) : motion;
     T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
       const T* base = arena + cell_base<T, Dim>(cell) * node_values;
-      gather<T, Dim, Quadratic, true, true, false>(base, node_values, x, weights, first, n, motion);
-      gather<T, Dim, Quadratic, true, false, true>(base + record, node_values, x, weights, first, n,
-                                                   increment);
-      if (filling) gather_filling<T, Dim, Quadratic>(base + record, node_values, weights, first, n, filling);
-    }
-    relax_velocities<T, Dim>(step, increment.value, v, tile.count);
-    for (int c = 0; c < Dim; ++c) {
-      tile.close(particles.velocity[c], v[c]);
-      for (int a = 0; a < Dim; ++a) {
-        T* affine = tile.open(particles.affine[c * Dim + a]);
-#pragma omp simd
-        for (int q = 0; q < tile.count; ++q) affine[q] = step.keep * affine[q] + increment.affine[c][a][q];
-        tile.close(particles.affine[c * Dim + a], affine);
+      if constexpr (kept) {
+        const CellField<T, Dim, Quadratic, node_values> field(base);
+        gather<T, Dim, Quadratic, node_values, motion_wanted>(field, 1, x, per_cell, first, n, motion,
+                                                              nullptr);
+        gather<T, Dim, Quadratic, node_values, increment_wanted>(field, record + 1, x, per_cell, first, n,
+                                                                 increment, filling);
+      } else {
+        const CellField<T, Dim, Quadratic, record> field(base + record);
+        gather<T, Dim, Quadratic, record, motion_wanted>(field, 1, x, per_cell, first, n, motion, filling);
       }
+    }
+    const auto carry_on = [&](T* own, T* gathered) {
+      if constexpr (kept) {
+        T* values = tile.open(own);
+        relax(step.keep, gathered, values, tile.count);
+        tile.close(own, values);
+      } else {
+        tile.close(own, gathered);
+      }
+    };
+    for (int c = 0; c < Dim; ++c) {
+      carry_on(particles.velocity[c], increment.value[c]);
+      for (int a = 0; a < Dim; ++a) carry_on(particles.affine[c * Dim + a], increment.affine[c][a]);
     }
     deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value,
                                                      filling);
+  }
+}
+
+template <class T, int Dim, bool Axisymmetric>
+void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
+                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
+  alignas(64) T arena[nodes_per_arena<Dim> * node_values];
+  load_arena<T, Dim, Quadratic>(step, block, nodes, arena);
+  if (step.keep > T(0)) {
+    apic_tiles<T, Dim, Axisymmetric, Own::kept>(step, particles, block, arena, workspace);
+  } else {
+    apic_tiles<T, Dim, Axisymmetric, Own::forgotten>(step, particles, block, arena, workspace);
   }
 }
 
@@ -270,7 +285,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
   load_arena<T, Dim, Linear>(step, block, nodes, arena);
   T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * node_values;
   for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
-  using Momentum = Source<T, Dim, Linear, false, record>;
+  using Momentum = Source<T, Dim, false, record>;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *v[Dim];
@@ -279,18 +294,18 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     const T* mass = tile.open(particles.mass);
     Weights<T, Dim, Linear> weights;
     weights.make(tile, x);
-    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, true, false, false);
-    const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, true, false, false);
+    const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, Wanted{});
+    const Gathered<T, Dim> increment = room_for_gathered<T, Dim>(tile, Wanted{});
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
-      const T* base = arena + cell_base<T, Dim>(cell) * node_values;
-      gather<T, Dim, Linear, true, false, false>(base, node_values, x, weights, first, n, motion);
-      gather<T, Dim, Linear, true, false, false>(base + record, node_values, x, weights, first, n, increment);
+      const CellField<T, Dim, Linear, node_values> field(arena + cell_base<T, Dim>(cell) * node_values);
+      gather<T, Dim, Linear, node_values, Wanted{}>(field, 1, x, T(1), first, n, motion, nullptr);
+      gather<T, Dim, Linear, node_values, Wanted{}>(field, record + 1, x, T(1), first, n, increment, nullptr);
     }
     Momentum* momentum = reinterpret_cast<Momentum*>(tile.memory + tile.capacity * tile.used);
-    relax_velocities<T, Dim>(step, increment.value, v, tile.count);
     for (int c = 0; c < Dim; ++c) {
+      relax(step.keep, increment.value[c], v[c], tile.count);
       tile.close(particles.velocity[c], v[c]);
       tile.close(particles.advection[c], motion.value[c]);
     }
@@ -301,8 +316,8 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * node_values, node_values,
-                                       momentum, weights, tile.cell_first(cell), tile.cell_count(cell));
+        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * node_values, momentum, weights,
+                                       tile.cell_first(cell), tile.cell_count(cell));
   }
 }
 
@@ -312,21 +327,20 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
                            const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
   load_arena<T, Dim, Linear>(step, block, nodes, arena);
+  constexpr Wanted wanted{Axisymmetric, true, false};
+  const T per_cell = T(1) / step.cell;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *advection[Dim];
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
     for (int a = 0; a < Dim; ++a) advection[a] = tile.open(particles.advection[a]);
-    Weights<T, Dim, Linear> weights;
-    weights.make(tile, x);
-    const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, Axisymmetric, true, false);
+    const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, wanted);
     T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
-      const T* base = arena + cell_base<T, Dim>(cell) * node_values;
-      gather<T, Dim, Linear, Axisymmetric, true, false>(base, node_values, x, weights, first, n, g);
-      if (filling) gather_filling<T, Dim, Linear>(base + record, node_values, weights, first, n, filling);
+      const CellField<T, Dim, Linear, node_values> field(arena + cell_base<T, Dim>(cell) * node_values);
+      gather<T, Dim, Linear, node_values, wanted>(field, 1, x, per_cell, first, n, g, filling);
     }
     deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection, filling);
   }

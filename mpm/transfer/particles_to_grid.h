@@ -7,61 +7,125 @@
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// One particle's contribution to the node records around it, the product of the axes' weights times
-/// value + sum over the axes of term / weight: `term[a][n]` holds what axis a's node n brings beyond the
-/// plain weight (its offset times the affine part, its slope times the stress).
-template <class T, int Dim, class Shape, bool Terms, int Values>
+/// One particle's contribution to the node records around it: the product of the axes' weights times
+/// `value`, and for every axis `term`, which takes the place of that axis' weight in the product and `value`:
+/// for its first and last node what the particle brings beyond the plain weight (weight and offset times the
+/// affine part, slope times the stress). Over an axis' nodes terms sum to nothing.
+template <class T, int Dim, bool Terms, int Values>
 struct Source {
   T value[Values];
-  T term[Terms ? Dim : 1][Terms ? Shape::nodes : 1][Values];
+  T term[Terms ? Dim : 1][Terms ? 2 : 1][Values];
 };
 
-/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes. The
-/// accumulators of a slab of nodes stay in registers over the particles.
-template <class T, int Dim, class Shape, bool Terms, int Values>
-void scatter(T* arena_cell, int node_stride, const Source<T, Dim, Shape, Terms, Values>* source,
-             const Weights<T, Dim, Shape>& w, int first, int count) {
-  constexpr int nodes = Shape::nodes;
-  constexpr int rows = Dim == 3 ? nodes : 1;
-  constexpr int last = Dim - 1;
+/// A slab of a cell's nodes across the first axis, as sums over the particles: of the plain contribution, of
+/// those with the first and the last node's weight along each axis.
+template <class T, int Dim, class Shape, int Values>
+struct Slab {
+  static constexpr int nodes = Shape::nodes;
+  static constexpr int rows = Dim == 3 ? nodes : 1;
   using R = Record<T, Values>;
-  const R zero = {};
-  for (int i = 0; i < nodes; ++i) {
-    R sum[rows][nodes];
-#pragma GCC unroll 9
-    for (int j = 0; j < rows; ++j)
-#pragma GCC unroll 9
-      for (int k = 0; k < nodes; ++k) sum[j][k] = zero;
-    for (int q = first; q < first + count; ++q) {
-      const auto& s = source[q];
-      const T wi = w.weight[0][i][q];
-#pragma GCC unroll 9
-      for (int j = 0; j < rows; ++j) {
-        T wij = wi;
-        R plane;
+  R sum[rows][nodes];
+};
+
+/// Which of an axis' two outer nodes a function belongs to; quadratic functions have a plain one in between.
+template <class Shape>
+constexpr bool is_plain(int function) {
+  return Shape::nodes == 3 && function == 1;
+}
+template <class Shape>
+constexpr int side_of(int function) {
+  return function == 0 ? 0 : 1;
+}
+
+/// Sums one slab, that of function `I` of the first axis, over the particles [first, first + count) of a
+/// cell. The sums stay in registers.
+template <class T, int Dim, class Shape, bool Terms, int Values, int I>
+FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const Weights<T, Dim, Shape>& w,
+                              int first, int count, Slab<T, Dim, Shape, Values>& slab) {
+  constexpr int nodes = Shape::nodes, rows = slab.rows, last = Dim - 1;
+  constexpr bool plain = is_plain<Shape>(I);
+  using R = Record<T, Values>;
+  R sum[rows][nodes];
+#pragma GCC unroll 3
+  for (int j = 0; j < rows; ++j)
+#pragma GCC unroll 3
+    for (int k = 0; k < nodes; ++k) sum[j][k] = R{};
+  for (int q = first; q < first + count; ++q) {
+    const auto& s = source[q];
+    R here = record_at<Values>(s.value), row[2], along[2];
+    if constexpr (!plain) here *= w.weight[0][side_of<Shape>(I)][q];
+    if constexpr (Terms) {
+      if constexpr (!plain) here += record_at<Values>(s.term[0][side_of<Shape>(I)]);
+#pragma GCC unroll 2
+      for (int side = 0; side < 2; ++side) {
         if constexpr (Dim == 3) {
-          const T wj = w.weight[1][j][q];
-          wij = wi * wj;
-          plane = wij * record_at<Values>(s.value);
-          if constexpr (Terms)
-            plane += wj * record_at<Values>(s.term[0][i]) + wi * record_at<Values>(s.term[1][j]);
-        } else {
-          plane = wij * record_at<Values>(s.value);
-          if constexpr (Terms) plane += record_at<Values>(s.term[0][i]);
+          row[side] = record_at<Values>(s.term[1][side]);
+          if constexpr (!plain) row[side] *= w.weight[0][side_of<Shape>(I)][q];
         }
-#pragma GCC unroll 9
-        for (int k = 0; k < nodes; ++k) {
-          sum[j][k] += w.weight[last][k][q] * plane;
-          if constexpr (Terms) sum[j][k] += wij * record_at<Values>(s.term[last][k]);
+        along[side] = record_at<Values>(s.term[last][side]);
+        if constexpr (!plain) along[side] *= w.weight[0][side_of<Shape>(I)][q];
+      }
+    }
+#pragma GCC unroll 3
+    for (int j = 0; j < rows; ++j) {
+      R line = here, line_along[2];
+      if constexpr (Terms) {
+        line_along[0] = along[0];
+        line_along[1] = along[1];
+      }
+      if (Dim == 3 && !is_plain<Shape>(j)) {
+        const T wj = w.weight[1][side_of<Shape>(j)][q];
+        line *= wj;
+        if constexpr (Terms) {
+          line += row[side_of<Shape>(j)];
+          line_along[0] *= wj;
+          line_along[1] *= wj;
+        }
+      }
+#pragma GCC unroll 3
+      for (int k = 0; k < nodes; ++k) {
+        if (is_plain<Shape>(k)) {
+          sum[j][k] += line;
+        } else {
+          sum[j][k] += w.weight[last][side_of<Shape>(k)][q] * line;
+          if constexpr (Terms) sum[j][k] += line_along[side_of<Shape>(k)];
         }
       }
     }
-#pragma GCC unroll 9
-    for (int j = 0; j < rows; ++j)
-#pragma GCC unroll 9
-      for (int k = 0; k < nodes; ++k)
-        record_at<Values>(arena_cell + arena_index<Dim>(i, j, k) * node_stride) += sum[j][k];
   }
+  // From the plain sums to those of the middle nodes.
+  if constexpr (nodes == 3) {
+#pragma GCC unroll 3
+    for (int j = 0; j < rows; ++j) sum[j][1] -= sum[j][0] + sum[j][2];
+    if constexpr (Dim == 3) {
+#pragma GCC unroll 3
+      for (int k = 0; k < nodes; ++k) sum[1][k] -= sum[0][k] + sum[2][k];
+    }
+  }
+#pragma GCC unroll 3
+  for (int j = 0; j < rows; ++j)
+#pragma GCC unroll 3
+    for (int k = 0; k < nodes; ++k) slab.sum[j][k] = sum[j][k];
+}
+
+/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
+template <class T, int Dim, class Shape, bool Terms, int Values>
+void scatter(T* arena_cell, const Source<T, Dim, Terms, Values>* source, const Weights<T, Dim, Shape>& w,
+             int first, int count) {
+  constexpr int nodes = Shape::nodes;
+  Slab<T, Dim, Shape, Values> slabs[nodes];
+  sum_slab<T, Dim, Shape, Terms, Values, 0>(source, w, first, count, slabs[0]);
+  sum_slab<T, Dim, Shape, Terms, Values, 1>(source, w, first, count, slabs[1]);
+  if constexpr (nodes == 3) sum_slab<T, Dim, Shape, Terms, Values, 2>(source, w, first, count, slabs[2]);
+#pragma GCC unroll 3
+  for (int j = 0; j < slabs[0].rows; ++j)
+#pragma GCC unroll 3
+    for (int k = 0; k < nodes; ++k) {
+      if constexpr (nodes == 3) slabs[1].sum[j][k] -= slabs[0].sum[j][k] + slabs[2].sum[j][k];
+#pragma GCC unroll 3
+      for (int i = 0; i < nodes; ++i)
+        record_at<Values>(arena_cell + arena_index<Dim>(i, j, k) * node_values) += slabs[i].sum[j][k];
+    }
 }
 
 /// Mass, momentum, volume and the impulse of the step's forces of one block's particles, into that block's
@@ -71,7 +135,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
                        const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
   constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
   constexpr int arena_values = nodes_per_arena<Dim> * node_values;
-  using Sources = Source<T, Dim, Shape, true, node_values>;
+  using Sources = Source<T, Dim, true, node_values>;
   T* arena = arenas + static_cast<std::size_t>(block.slot) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
@@ -108,11 +172,26 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
     }
 
+    // What an axis' first and last node take of a particle's affine part and of its stress.
+    const T dt = step.step, impulse_per_cell = dt / step.cell;
+    T *slant[Dim][2], *push[Dim][2];
+    for (int a = 0; a < Dim; ++a)
+      for (int side = 0; side < 2; ++side) {
+        const int node = outer_node<Shape>(side);
+        T* const to_push = push[a][side] = tile.fresh();
+        T* const to_slant = slant[a][side] = affine ? tile.fresh() : nullptr;
+#pragma omp simd
+        for (int q = 0; q < count; ++q) {
+          to_push[q] = -volume[q] * impulse_per_cell * Shape::slope(node, x[a][q]);
+          if constexpr (affine)
+            to_slant[q] = mass[q] * weights.weight[a][side][q] * Shape::offset(node, x[a][q]);
+        }
+      }
+
     // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
     // workspace's rest, and what only they need is read from the particles' arrays straight away.
     Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
-    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 30 <= workspace_arrays);
-    const T dt = step.step, impulse_per_cell = dt / step.cell;
+    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 40 <= workspace_arrays);
     const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
     const T per_cell_volume = T(1) / (circle * (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell);
     const std::uint32_t* list = block.list + tile.first;
@@ -126,12 +205,11 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
                particles.deviator[3][id], particles.deviator[4][id]};
       }
       const T p = centroid ? T(0) : pressure[q];
-      const T m = mass[q], scale = -volume[q] * impulse_per_cell;
-      Record<T> forcing = {volume[q] * per_cell_volume, m * dt * step.acceleration[0],
-                           m * dt * step.acceleration[1], Dim == 3 ? m * dt * step.acceleration[2] : T(0)};
+      const T m = mass[q];
+      Record<T> forcing = {volume[q] * per_cell_volume, T(0), T(0), T(0)};
       if constexpr (Axisymmetric) {
         forcing[0] *= per_radius[q];
-        forcing[1] -= volume[q] * dt * (dev.zz() - p) * per_radius[q];
+        forcing[1] = -volume[q] * dt * (dev.zz() - p) * per_radius[q];
       }
       Sources& source = sources[q];
       record_at(source.value) = Record<T>{m, m * particles.velocity[0][id], m * particles.velocity[1][id],
@@ -139,23 +217,23 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       record_at(source.value + record) = forcing;
       Record<T> stress[Dim];
       if constexpr (Dim == 3) {
-        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, scale * dev.xz};
-        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), scale * dev.yz};
-        stress[2] = Record<T>{T(0), scale * dev.xz, scale * dev.yz, scale * (dev.zz() - p)};
+        stress[0] = Record<T>{T(0), dev.xx - p, dev.xy, dev.xz};
+        stress[1] = Record<T>{T(0), dev.xy, dev.yy - p, dev.yz};
+        stress[2] = Record<T>{T(0), dev.xz, dev.yz, dev.zz() - p};
       } else {
-        stress[0] = Record<T>{T(0), scale * (dev.xx - p), scale * dev.xy, T(0)};
-        stress[1] = Record<T>{T(0), scale * dev.xy, scale * (dev.yy - p), T(0)};
+        stress[0] = Record<T>{T(0), dev.xx - p, dev.xy, T(0)};
+        stress[1] = Record<T>{T(0), dev.xy, dev.yy - p, T(0)};
       }
+#pragma GCC unroll 3
       for (int a = 0; a < Dim; ++a) {
-        for (int n = 0; n < Shape::nodes; ++n)
-          record_at(source.term[a][n] + record) = weights.slope[a][n][q] * stress[a];
-        if constexpr (affine) {
-          const Record<T> slant = {T(0), m * particles.affine[a][id], m * particles.affine[Dim + a][id],
-                                   Dim == 3 ? m * particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
-          for (int n = 0; n < Shape::nodes; ++n)
-            record_at(source.term[a][n]) = (weights.weight[a][n][q] * Shape::offset(n, x[a][q])) * slant;
-        } else {
-          for (int n = 0; n < Shape::nodes; ++n) record_at(source.term[a][n]) = Record<T>{};
+        Record<T> own = {};
+        if constexpr (affine)
+          own = Record<T>{T(0), particles.affine[a][id], particles.affine[Dim + a][id],
+                          Dim == 3 ? particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
+#pragma GCC unroll 2
+        for (int side = 0; side < 2; ++side) {
+          record_at(source.term[a][side] + record) = push[a][side][q] * stress[a];
+          record_at(source.term[a][side]) = affine ? slant[a][side][q] * own : own;
         }
       }
     }
@@ -165,13 +243,13 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       if (n == 0) continue;
       const int first = tile.cell_first(cell);
       T* base = arena + cell_base<T, Dim>(cell) * node_values;
-      scatter<T, Dim, Shape, true>(base, node_values, sources, weights, first, n);
+      scatter<T, Dim, Shape, true>(base, sources, weights, first, n);
       if (centroid) {
         // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
         T thrust = T(0);
         for (int q = first; q < first + n; ++q) thrust += volume[q] * pressure[q];
         const T hoop = Axisymmetric ? thrust * dt / (step.cell * (radial[first] + T(0.5))) : T(0);
-        const T push = thrust * impulse_per_cell;
+        const T along = thrust * impulse_per_cell;
         for (int i = 0; i < Shape::nodes; ++i)
           for (int j = 0; j < (Dim == 3 ? Shape::nodes : 1); ++j)
             for (int k = 0; k < Shape::nodes; ++k) {
@@ -179,13 +257,18 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
               const T wi = Shape::weight(i, half), wj = Dim == 3 ? Shape::weight(j, half) : T(1),
                       wk = Shape::weight(k, half);
               T* to = base + arena_index<Dim>(i, j, k) * node_values + record + 1;
-              to[0] += push * Shape::slope(i, half) * wj * wk + hoop * wi * wj * wk;
-              if constexpr (Dim == 3) to[1] += push * wi * Shape::slope(j, half) * wk;
-              to[Dim - 1] += push * wi * wj * Shape::slope(k, half);
+              to[0] += along * Shape::slope(i, half) * wj * wk + hoop * wi * wj * wk;
+              if constexpr (Dim == 3) to[1] += along * wi * Shape::slope(j, half) * wk;
+              to[Dim - 1] += along * wi * wj * Shape::slope(k, half);
             }
       }
     }
   }
+  // Gravity: every node falls as its mass does.
+  const Record<T> fall = {T(0), step.step * step.acceleration[0], step.step * step.acceleration[1],
+                          step.step * step.acceleration[2]};
+  for (int node = 0; node < arena_values; node += node_values)
+    record_at(arena + node + record) += arena[node] * fall;
   if constexpr (Shape::nodes == 3) fold_ghosts<T, Dim>(arena, block, step.bounds);
 }
 

@@ -45,4 +45,11 @@ struct Linear {
   static constexpr double margin = 0x1p-20;
 };
 
+/// The first or the last of a cell's nodes along an axis. With quadratic functions the middle one takes what
+/// these two leave: more than half, so that nothing cancels.
+template <class Shape>
+FLOWREST_INLINE constexpr int outer_node(int side) {
+  return side * (Shape::nodes - 1);
+}
+
 }  // namespace flowrest::mpm

@@ -3,6 +3,7 @@
 #include "mpm/simd/lanes.h"
 #include "mpm/solver/kernels.h"
 #include "mpm/solver/layout.h"
+#include "mpm/transfer/shape.h"
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
@@ -62,24 +63,19 @@ struct Tile {
   }
 };
 
-/// Weights and slopes of a tile's particles, per axis and node.
+/// Weights of a tile's particles, per axis, of the cell's first and last node there.
 template <class T, int Dim, class Shape>
 struct Weights {
-  T* weight[Dim][Shape::nodes];
-  T* slope[Dim][Shape::nodes];
+  T* weight[Dim][2];
 
   void make(Tile<T, Dim>& tile, const T* const* position) {
     for (int a = 0; a < Dim; ++a) {
-      for (int n = 0; n < Shape::nodes; ++n) weight[a][n] = tile.fresh();
-      for (int n = 0; n < Shape::nodes; ++n) slope[a][n] = tile.fresh();
+      for (int side = 0; side < 2; ++side) weight[a][side] = tile.fresh();
       const T* x = position[a];
 #pragma omp simd
-      for (int q = 0; q < tile.count; ++q) {
-        for (int n = 0; n < Shape::nodes; ++n) {
-          weight[a][n][q] = Shape::weight(n, x[q]);
-          slope[a][n][q] = Shape::slope(n, x[q]);
-        }
-      }
+      for (int q = 0; q < tile.count; ++q)
+        for (int side = 0; side < 2; ++side)
+          weight[a][side][q] = Shape::weight(outer_node<Shape>(side), x[q]);
     }
   }
 };
