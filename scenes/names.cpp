@@ -44,7 +44,8 @@ const NameTable<Precision>& names_of(Precision) {
 }
 
 const NameTable<Seeding>& names_of(Seeding) {
-  static const NameTable<Seeding> table = {{Seeding::lattice, "lattice"}, {Seeding::jittered, "jittered"}};
+  static const NameTable<Seeding> table = {
+      {Seeding::lattice, "lattice"}, {Seeding::jittered, "jittered"}, {Seeding::gmsh, "gmsh"}};
   return table;
 }
 

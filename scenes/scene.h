@@ -19,7 +19,7 @@ enum class Dimension { axisymmetric, plane, half, quarter, full };
 enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
-enum class Seeding { lattice, jittered };
+enum class Seeding { lattice, jittered, gmsh };
 /// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
 /// How a wall holds the material; only `no_slip` and `slip` are names, friction is given by its coefficient.

@@ -230,7 +230,10 @@ std::vector<Key> mpm_keys() {
               "lets time_step and cfl pass the stable limit"),
       choice("mpm.precision", AT(draft.scene.mpm.precision), "floating-point numbers of the solver"),
       integer("mpm.threads", 0, 4096, AT(draft.scene.mpm.threads), "threads; 0 takes all cores"),
-      choice("mpm.seeding", AT(draft.scene.mpm.seeding), "where particles start"),
+      choice(
+          "mpm.seeding", AT(draft.scene.mpm.seeding),
+          "where particles start: on a lattice, at a random place in each of its sites, or at the centroids "
+          "of an unstructured mesh by the program gmsh"),
       integer("mpm.seed", 0, std::numeric_limits<std::int64_t>::max(), AT(draft.scene.mpm.seed),
               "seed of the jitter"),
       choice("mpm.fluid_update", AT(draft.scene.mpm.fluid_update),

@@ -346,7 +346,7 @@ const Wrong wrong_scenes[] = {
     {"ModulusOfZero", slump_text, "youngs_modulus = 1.0e5", "youngs_modulus = 0",
      "wrong.toml:16:18: material.youngs_modulus is 0; allowed: greater than 0, at most 1e+15"},
     {"UnknownSeeding", slump_text, "cfl = 0.75", "seeding = \"random\"",
-     "wrong.toml:36:11: mpm.seeding is \"random\"; allowed: lattice, jittered"},
+     "wrong.toml:36:11: mpm.seeding is \"random\"; allowed: lattice, jittered, gmsh"},
     {"UnknownFluidUpdate", slump_text, "cfl = 0.75", "fluid_update = \"implict\"",
      "wrong.toml:36:16: mpm.fluid_update is \"implict\", nearest is \"implicit\"; allowed: implicit, "
      "explicit"},

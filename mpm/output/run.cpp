@@ -41,20 +41,19 @@ class MpmRun {
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
         gauges_(scene_),
         factor_(whole_body_factor(scene)),
+        // Before anything is written: seeding may need a program that is missing.
+        solver_(checkpoint ? make_solver(settings_, checkpoint->solver)
+                           : make_solver(settings_, seed_particles(scene))),
         writer_(checkpoint ? runs::RunWriter::resume(options.directory, scene, checkpoint->run.time)
                            : runs::RunWriter(options.directory, scene, "mpm")),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.time : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
                   scene.time.end, options.quiet) {
-    cpu_begin_ = runs::cpu_seconds();
-    wall_begin_ = seconds_now();
     if (checkpoint) {
       state_ = checkpoint->run;
-      solver_ = make_solver(settings_, checkpoint->solver);
       cpu_begin_ -= state_.cpu;
       wall_begin_ -= state_.wall;
     } else {
-      solver_ = make_solver(settings_, seed_particles(scene));
       state_.largest_pressure = scenes::pressure_at_rest(scene);
     }
     if (!checkpoint) std::filesystem::remove(options.directory / "checkpoint.h5");
@@ -338,13 +337,13 @@ class MpmRun {
   SolverSettings settings_;
   Gauges gauges_;
   double factor_;
+  double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
+  std::unique_ptr<Solver> solver_;
   runs::RunWriter writer_;
   SnapshotWriter snapshots_;
   runs::Progress progress_;
-  std::unique_ptr<Solver> solver_;
   RunState state_;
   Measures measures_;
-  double cpu_begin_ = 0.0, wall_begin_ = 0.0;
 };
 
 }  // namespace

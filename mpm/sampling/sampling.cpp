@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "mpm/sampling/gmsh_mesh.h"
 #include "mpm/solver/settings.h"
 
 namespace flowrest::mpm {
@@ -19,11 +20,13 @@ constexpr int probes = 4;
 /// Sites with less than this inside are left out; the scaling makes up for their volume.
 constexpr double smallest_share = 0.2;
 
-/// A body to fill: its bounding box, whether a point is inside, and its volume.
+/// A body to fill: its bounding box, whether a point is inside, its volume, and its outline for a mesh.
 struct Body {
   Point lower{}, upper{};
   std::function<bool(const Point&)> contains;
   double volume = 0.0;
+  std::vector<std::array<double, 2>> outline;  ///< corners, along the first axis and the vertical one
+  double turn = 0.0;  ///< rad, in space: the outline is turned about the vertical axis
 };
 
 /// Whether the material has come to rest in a container before the scene begins, and so carries its weight.
@@ -95,7 +98,20 @@ Body cone(const scenes::Scene& scene) {
   body.volume = scene.geometry.dimension == scenes::Dimension::plane
                     ? 0.5 * (g.cone_radius_bottom + g.cone_radius_top) * g.cone_height
                     : g.volume() / whole_body_factor(scene);
+  body.outline = {
+      {0.0, 0.0}, {g.cone_radius_bottom, 0.0}, {g.cone_radius_top, g.cone_height}, {0.0, g.cone_height}};
+  if (g.cone_radius_top == 0.0) body.outline.pop_back();
+  if (g.cone_radius_bottom == 0.0) body.outline.erase(body.outline.begin() + 1);
+  if (dim == 3) body.turn = full ? 2.0 * std::numbers::pi : 0.5 * std::numbers::pi;
   return body;
+}
+
+/// The outline of a body that fills its bounding box.
+std::vector<std::array<double, 2>> corners(const Body& body, std::size_t up) {
+  return {{body.lower[0], body.lower[up]},
+          {body.upper[0], body.lower[up]},
+          {body.upper[0], body.upper[up]},
+          {body.lower[0], body.upper[up]}};
 }
 
 /// A box from the origin.
@@ -105,6 +121,7 @@ Body box(const Point& size) {
   body.volume = 1.0;
   for (const double edge : size)
     if (edge > 0.0) body.volume *= edge;
+  body.outline = corners(body, size[2] > 0.0 ? 2 : 1);
   body.contains = [size](const Point& x) {
     for (std::size_t a = 0; a < 3; ++a)
       if (x[a] < 0.0 || x[a] > size[a]) return false;
@@ -143,6 +160,16 @@ Body v_funnel(const scenes::Scene& scene) {
     return std::abs(x[0]) <= 0.5 * g.width_at(x[up]);
   };
   body.volume = dim == 2 ? 0.5 * g.volume() / g.depth : g.volume() / whole_body_factor(scene);
+  const auto corner = [&](double height) { return std::array<double, 2>{0.5 * g.width_at(height), height}; };
+  body.outline = {corner(0.0), corner(g.neck_height), corner(g.height())};
+  if (g.neck_height <= 0.0) body.outline.erase(body.outline.begin());
+  // The other side is the mirror image, or the middle.
+  for (std::size_t i = body.outline.size(); i-- > 0;)
+    if (full) body.outline.push_back({-body.outline[i][0], body.outline[i][1]});
+  if (!full) {
+    body.outline.push_back({0.0, g.height()});
+    body.outline.push_back({0.0, 0.0});
+  }
   return body;
 }
 
@@ -151,6 +178,7 @@ Body duct(const scenes::Scene& scene) {
   body.upper = {block_edge * cell_size(scene), scene.duct().height, 0.0};
   body.contains = [top = scene.duct().height](const Point& x) { return x[1] >= 0.0 && x[1] <= top; };
   body.volume = body.upper[0] * body.upper[1];
+  body.outline = corners(body, 1);
   return body;
 }
 
@@ -182,6 +210,35 @@ class Sampler {
   }
 
   std::vector<Seed> sample() {
+    if (scene_.mpm.seeding == scenes::Seeding::gmsh) {
+      fill_with_elements();
+    } else {
+      fill_cells();
+    }
+    double total = 0.0;
+    for (const auto& s : seeds_) total += s.volume;
+    for (auto& s : seeds_) s.volume *= body_.volume / total;
+    return std::move(seeds_);
+  }
+
+ private:
+  /// A particle at the centroid of every element of an unstructured mesh, with the element's own volume.
+  void fill_with_elements() {
+    MeshedBody meshed{body_.outline, dim_, body_.turn, body_.lower[1], body_.upper[1]};
+    const double sites = static_cast<double>(sites_[0]) * sites_[1] * sites_[2];
+    for (const MeshElement& element : mesh_by_gmsh(meshed, std::pow(cell_, dim_) / sites)) {
+      CellIndex cell{};
+      Point within{};
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) {
+        const double place = element.centroid[a] / cell_;
+        cell[a] = static_cast<int>(std::floor(place));
+        within[a] = place - cell[a];
+      }
+      add_seed(cell, within, element.size);
+    }
+  }
+
+  void fill_cells() {
     std::array<int, 3> first{}, last{1, 1, 1};
     for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) {
       // A face that lies on a multiple of the cell within round-off bounds no further cell.
@@ -191,13 +248,8 @@ class Sampler {
     for (int i = first[0]; i < last[0]; ++i)
       for (int j = first[1]; j < last[1]; ++j)
         for (int k = first[2]; k < last[2]; ++k) fill_cell({i, j, k});
-    double total = 0.0;
-    for (const auto& s : seeds_) total += s.volume;
-    for (auto& s : seeds_) s.volume *= body_.volume / total;
-    return std::move(seeds_);
   }
 
- private:
   void fill_cell(const CellIndex& cell) {
     const int in_depth = dim_ == 3 ? sites_[2] : 1;
     for (int i = 0; i < sites_[0]; ++i)
@@ -230,12 +282,16 @@ class Sampler {
     if (share < smallest_share) return;
     for (auto& c : centroid) c /= inside;
     if (scene_.mpm.seeding == scenes::Seeding::jittered) centroid = jittered(cell, lower, size, centroid);
+    add_seed(cell, centroid, volume * share);
+  }
+
+  /// `size` is the area in the plane, also where that stands for a ring (Pappus: exact at a centroid).
+  void add_seed(const CellIndex& cell, const Point& within, double size) {
     const bool axisymmetric = scene_.geometry.dimension == scenes::Dimension::axisymmetric;
-    const double ring = axisymmetric ? 2.0 * std::numbers::pi * global(cell, centroid)[0] : 1.0;
     Seed seed;
     seed.cell = cell;
-    seed.position = centroid;
-    seed.volume = volume * share * ring;
+    seed.position = within;
+    seed.volume = size * (axisymmetric ? 2.0 * std::numbers::pi * global(cell, within)[0] : 1.0);
     if (scene_.thixotropy) seed.flocculation = scene_.thixotropy->initial_flocculation;
     seeds_.push_back(seed);
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mpm/solver/settings.h"
+#include "runs/process.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -218,4 +219,49 @@ TEST(Sampling, FlocculationBeginsAsTheSceneSays) {
                             "thixotropy.initial_flocculation=1.8"});
   for (const auto& s : seed_particles(scene)) ASSERT_EQ(s.flocculation, 1.8);
   for (const auto& s : seed_particles(slump("axisymmetric"))) ASSERT_EQ(s.flocculation, 0.0);
+}
+
+TEST(Sampling, AnUnstructuredMeshFillsEveryBodyWithParticlesOfUnequalVolume) {
+  if (!runs::find_program("gmsh")) GTEST_SKIP() << "gmsh is not installed";
+  const std::string unstructured = "mpm.seeding=gmsh";
+  for (const auto& [name, dimension] : {std::pair{"roussel-slump", "axisymmetric"},
+                                        {"roussel-slump", "plane"},
+                                        {"roussel-slump", "quarter"},
+                                        {"roussel-slump", "full"},
+                                        {"mix-a-vfunnel-sf0", "quarter"},
+                                        {"mix-a-vfunnel-sf0", "plane"},
+                                        {"mix-a-lbox-sf0", "half"},
+                                        {"dam-break", "plane"},
+                                        {"poiseuille-step-down", "plane"}}) {
+    const std::string of = std::string(name) + " " + dimension;
+    const auto of_scene = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> set = {"geometry.dimension=" + std::string(dimension),
+                                      "mpm.particles_per_cell=8"};
+      if (std::string(dimension) == "axisymmetric" || std::string(dimension) == "plane")
+        set.back() = "mpm.particles_per_cell=4";
+      set.insert(set.end(), more.begin(), more.end());
+      if (std::string(name) != "poiseuille-step-down") set.push_back("mpm.cell=0.03");
+      return scenes::load_scene(name, {set, {}});
+    };
+    const auto lattice = seed_particles(of_scene({})), mesh = seed_particles(of_scene({unstructured}));
+    EXPECT_NEAR(total(mesh), total(lattice), 2e-3 * total(lattice)) << of;
+    EXPECT_NEAR(static_cast<double>(mesh.size()), static_cast<double>(lattice.size()),
+                0.3 * static_cast<double>(lattice.size()))
+        << of;
+    std::array<double, 3> centre{}, expected{};
+    double least = 1e9, most = 0.0;
+    for (const auto& s : mesh) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        ASSERT_GE(s.position[a], 0.0);
+        ASSERT_LT(s.position[a], 1.0);
+        centre[a] += s.volume * place(s, 1.0)[a] / total(mesh);
+      }
+      least = std::min(least, s.volume);
+      most = std::max(most, s.volume);
+    }
+    for (const auto& s : lattice)
+      for (std::size_t a = 0; a < 3; ++a) expected[a] += s.volume * place(s, 1.0)[a] / total(lattice);
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(centre[a], expected[a], 0.05) << "cells, " << of;
+    EXPECT_GT(most, 1.5 * least) << of;
+  }
 }

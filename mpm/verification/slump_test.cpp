@@ -10,6 +10,7 @@
 #include "mpm/output/test_runs.h"
 #include "mpm/solver/settings.h"
 #include "mpm/solver/test_bodies.h"
+#include "runs/process.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -148,6 +149,18 @@ TEST_F(Slump, InFloatStopsWhereAndWhenItDoesInDouble) {
   EXPECT_NEAR(in_float.history.at("spread_mm").back(), spread, 0.002 * spread);
   const double rest = in_double.info["rest_time_s"].get<double>();
   EXPECT_NEAR(in_float.info["rest_time_s"].get<double>(), rest, 0.05 * rest);
+}
+
+TEST_F(Slump, StopsWhereItDoesHoweverItsParticlesAreSeeded) {
+  const bool has_gmsh = runs::find_program("gmsh").has_value();
+  const double lattice = run_and_read(coarse_slump()).history.at("spread_mm").back();
+  for (const std::string seeding : {"jittered", "gmsh"}) {
+    if (seeding == "gmsh" && !has_gmsh) GTEST_SKIP() << "gmsh is not installed";
+    const double spread =
+        run_and_read(coarse_slump({"mpm.seeding=" + seeding}), seeding).history.at("spread_mm").back();
+    std::printf("    lattice %.2f mm, %s %.2f mm\n", lattice, seeding.c_str(), spread);
+    EXPECT_NEAR(spread, lattice, 0.015 * lattice) << seeding;
+  }
 }
 
 TEST_F(Slump, TheDiscretisationMakesNoEnergy) {
