@@ -175,7 +175,6 @@ class CaseRun {
     info["cells"] = sampler_->cells();
     info["ranks"] = options_.ranks;
     if (const std::string differ = walls_differ(scene_); !differ.empty()) info["walls_differ"] = differ;
-    info["resolved_toml"] = scenes::resolved_toml(scene_);
     writer_.write();
   }
 

@@ -239,9 +239,10 @@ RunWriter::RunWriter(const fs::path& directory, const scenes::Scene& scene, cons
            {"verdict", ""},
            {"provenance", provenance()},
            {"scene", scene.source},
-           {"settings", Json::parse(scenes::resolved_json(scene))}};
-  // First the new run.json: killed at any moment, the folder stays recognisable and no old status vouches for
-  // new data.
+           {"settings", Json::parse(scenes::resolved_json(scene))},
+           {"resolved_toml", scenes::resolved_toml(scene)}};
+  // First the new run.json: killed at any moment, the folder stays recognisable, can be gone on with and no
+  // old status vouches for new data.
   write();
   remove_outputs(directory);
 }

@@ -87,12 +87,16 @@ void mark(const Folder& folder, const Job& job, const Outcome& outcome, double w
                          text.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
+/// Whether the run directory holds a part of this run that can be gone on with.
+bool has_begun(const Folder& folder, const Job& job) {
+  const Json info = read_json(folder.run(job.id) / "run.json");
+  return info.is_object() && info.value("settings", Json()) == job.settings &&
+         info.value("status", "") != to_string(runs::Status::failed);
+}
+
 /// From the last checkpoint where this run left one, else from the start.
-std::vector<std::string> arguments_of(const Folder& folder, const Job& job) {
+std::vector<std::string> arguments_of(const Folder& folder, const Job& job, bool begun) {
   const fs::path run = folder.run(job.id);
-  const Json info = read_json(run / "run.json");
-  const bool begun = info.is_object() && info.value("settings", Json()) == job.settings &&
-                     info.value("status", "") != to_string(runs::Status::failed);
   std::vector<std::string> arguments = {job.solver};
   if (begun)
     arguments.insert(arguments.end(), {"--resume", run.string()});
@@ -123,6 +127,33 @@ Outcome outcome_of_end(const Folder& folder, const Job& job, const runs::Process
   return {Ending::crashed, fmt::format("{}: {}", end.how(), why)};
 }
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Starts the run or goes on with it, and waits for its end; it has what is left of the longest time since
+/// `begin`.
+Outcome attempt(const Folder& folder, const Job& job, bool begun, Clock::time_point begin) {
+  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments_of(folder, job, begun),
+                        fs::current_path(), folder.log(job.id), {});
+  bool too_long = false, asked = false;
+  while (!process.poll()) {
+    too_long = too_long || seconds_since(begin) > job.longest_run;
+    if ((too_long || runs::InterruptGuard::count() > 0) && !asked) {
+      process.signal(SIGINT);
+      asked = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const runs::ProcessEnd end = *process.poll();
+  constexpr int program_missing = 4;
+  if (end.exit_code == program_missing && end.signal == 0)
+    throw runs::MissingProgram(last_words(folder.log(job.id)));
+  return outcome_of_end(folder, job, end, too_long);
+}
+
 }  // namespace
 
 std::string to_string(Ending ending) {
@@ -146,10 +177,7 @@ Outcome outcome_of(const Folder& folder, const Point& point) {
 int run_job(const fs::path& root, const std::string& id) {
   const Folder folder{root};
   const Job job = read_job(folder, id);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto wall = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const auto begin = Clock::now();
   if (const Outcome there = ending_in(folder.run(id), job.settings); there.ending == Ending::finished) {
     mark(folder, job, there, 0.0);  // it ended, but whoever waited for it was killed before it could say so
     return 0;
@@ -158,24 +186,16 @@ int run_job(const fs::path& root, const std::string& id) {
   fs::create_directories(folder.run(id).parent_path());
   clear_unusable(folder, job);
   const runs::InterruptGuard guard;
-  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments_of(folder, job), fs::current_path(),
-                        folder.log(id), {});
-  bool too_long = false, asked = false;
-  while (!process.poll()) {
-    too_long = too_long || wall() > job.longest_run;
-    if ((too_long || runs::InterruptGuard::count() > 0) && !asked) {
-      process.signal(SIGINT);
-      asked = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const bool begun = has_begun(folder, job);
+  Outcome outcome = attempt(folder, job, begun, begin);
+  if (begun && (outcome.ending == Ending::crashed || outcome.ending == Ending::refused)) {
+    // What it left could not be gone on with, which says nothing of the run.
+    fs::remove_all(folder.run(id));
+    outcome = attempt(folder, job, false, begin);
   }
-  const runs::ProcessEnd end = *process.poll();
-  constexpr int program_missing = 4, interrupted = 130;
-  if (end.exit_code == program_missing && end.signal == 0)
-    throw runs::MissingProgram(last_words(folder.log(id)));
-  const Outcome outcome = outcome_of_end(folder, job, end, too_long);
+  constexpr int interrupted = 130;
   if (outcome.ending == Ending::missing) return runs::InterruptGuard::count() > 0 ? interrupted : 1;
-  mark(folder, job, outcome, wall());
+  mark(folder, job, outcome, seconds_since(begin));
   return 0;
 }
 

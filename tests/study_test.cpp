@@ -152,7 +152,9 @@ class StudyCommand : public testing::Test {
   void expect_only_whole_marks(const std::string& output) const {
     for (const auto& mark : marks(output)) {
       std::ifstream file(mark);
-      EXPECT_TRUE(nlohmann::json::parse(file, nullptr, false).is_object()) << mark;
+      const auto json = nlohmann::json::parse(file, nullptr, false);
+      ASSERT_TRUE(json.is_object()) << mark;
+      EXPECT_EQ(json.value("ending", ""), "finished") << json.value("reason", "");
       EXPECT_EQ(runs::read_run(folder / output / "runs" / mark.stem()).status(), runs::Status::end_time);
     }
   }

@@ -54,6 +54,23 @@ TEST_F(Extremes, PastItsViscousLimitAnExplicitFluidIsRefusedAndWhereForcedItIsCa
     EXPECT_LE(step, 1.0000001 * scenes::step_limits(held).viscous);
 }
 
+TEST_F(Extremes, WhatStandsStillByRoundOffIsNotCalledSound) {
+  // Steps so short that in float no particle leaves its place though all of them fall; in double they do.
+  const std::vector<std::string> short_steps = {
+      "mpm.time_step=1e-7", "time.end=1e-4", "output.history_interval=2e-5", "output.checkpoint_interval=1"};
+  const auto centre_falls = [&](const std::string& precision) {
+    const auto run = run_and_read(tiny_slump(with(short_steps, {"mpm.precision=" + precision})), precision);
+    const auto& energy = run.history.at("potential_energy_J");
+    return std::pair{energy.front() - energy.back(), run.info["verdict"].get<std::string>()};
+  };
+  const auto [fall, verdict] = centre_falls("double");
+  EXPECT_GT(fall, 0.0);
+  EXPECT_EQ(verdict, "sound");
+  const auto [fake_rest, said] = centre_falls("float");
+  EXPECT_EQ(fake_rest, 0.0) << "the mode that is to be detected was not provoked";
+  EXPECT_THAT(said, HasSubstr("stands still by round-off"));
+}
+
 TEST_F(Extremes, ASingleParticleAndBodiesOneCellThickComeToAnEndAndAreSaidToBeUnresolved) {
   const std::vector<std::vector<std::string>> bodies = {
       {"geometry.cone_height=0.02", "geometry.cone_radius_top=0.0", "geometry.cone_radius_bottom=0.02",

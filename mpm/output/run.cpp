@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <optional>
 
 #include "mpm/output/checkpoint.h"
@@ -214,12 +215,17 @@ class MpmRun {
            settings_.flow.yield_stress;
   }
 
+  /// m/s2
+  double driving_acceleration() const {
+    double driving = 0.0;
+    for (const double a : acceleration_at(scene_, state_.time)) driving = std::max(driving, std::abs(a));
+    return driving;
+  }
+
   /// The bound counts once it has held for twice the time in which the driving force would move the material
   /// over its own height: at the start nothing yields yet, and that is not rest.
   double time_to_trust_rest() const {
-    const auto a = acceleration_at(scene_, state_.time);
-    double driving = 0.0;
-    for (const double c : a) driving = std::max(driving, std::abs(c));
+    const double driving = driving_acceleration();
     const double length = scene_.body_height();
     return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
   }
@@ -252,7 +258,6 @@ class MpmRun {
     info["cell_m"] = settings_.cell;
     info["particles"] = solver_->particle_count();
     info["occupied_cells_at_start"] = solver_->occupied_cells();
-    info["resolved_toml"] = scenes::resolved_toml(scene_);
     writer_.write();
   }
 
@@ -277,9 +282,31 @@ class MpmRun {
         has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
   }
 
+  /// Speeds below which a particle does not move at all: what it would move in a step is lost when it is
+  /// added to its place in its cell. m/s
+  double speed_lost_to_rounding() const {
+    const bool single = scene_.mpm.precision == scenes::Precision::single_precision;
+    const double rounding = 0.5 * (single ? double{std::numeric_limits<float>::epsilon()}
+                                          : std::numeric_limits<double>::epsilon());
+    return state_.step > 0.0 ? rounding * settings_.cell / state_.step : 0.0;
+  }
+
+  /// Whether what is lost could have moved the body visibly, or is as fast as its fall: it may only seem to
+  /// be at rest.
+  bool may_rest_by_rounding() const {
+    const double lost = speed_lost_to_rounding(), length = scene_.body_height();
+    const double driving = driving_acceleration();
+    const double fall = std::min(driving * scene_.time.end, std::sqrt(2.0 * driving * length));
+    return lost * scene_.time.end > 0.01 * length || (driving > 0.0 && lost > 0.1 * fall);
+  }
+
   /// "sound", or what makes the run's numbers doubtful.
   std::string verdict() const {
     const scenes::StepLimits limits = scenes::step_limits(scene_);
+    if (may_rest_by_rounding())
+      return fmt::format(
+          "noisy: with steps of {:.2g} s what moves slower than {:.2g} m/s stands still by round-off",
+          state_.step, speed_lost_to_rounding());
     if (state_.step > limits.viscous)
       return fmt::format("noisy: the explicit fluid's step of {:.2g} s is past its viscous limit of {:.2g} s",
                          state_.step, limits.viscous);

@@ -227,6 +227,11 @@ TEST_F(MpmRun, AFinishedRunResumedStaysAsItIs) {
   EXPECT_EQ(text_of(folder / "run" / "profiles.csv"), profiles);
 }
 
+TEST_F(MpmRun, WhatWasKilledBeforeItsFirstCheckpointIsGoneOnWith) {
+  { const runs::RunWriter killed_here(folder / "run", tiny_slump(), "mpm"); }
+  EXPECT_EQ(resume(options("run")).status, runs::Status::end_time);
+}
+
 TEST_F(MpmRun, NothingToResumeIsAnError) {
   fs::create_directories(folder / "empty");
   EXPECT_THROW(resume(options("empty")), runs::RunError);
