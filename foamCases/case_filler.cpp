@@ -131,10 +131,11 @@ std::string time_parameters(const Scene& scene) {
       "firstDeltaT         {};\n"
       "maxDeltaT           {};\n"
       "maxCourant          {};\n"
+      "outerCorrectors     {};\n"
       "sampleInterval      {};\n"
       "snapshotInterval    {};\n",
       scene.time.end, std::min(0.02 * step, 0.01 * scene.time.end), step, scene.foam.max_courant,
-      sample_interval(scene), scene.output.snapshot_interval);
+      scene.foam.outer_correctors, sample_interval(scene), scene.output.snapshot_interval);
 }
 
 std::string phase_parameters(const Scene& scene) {

@@ -79,10 +79,11 @@ TEST(CaseFiller, TheCommittedDuctIsTheStepDown) {
 
 TEST(CaseFiller, TakesEveryNumberFromTheScene) {
   const auto scene = roussel_slump(
-      "bi-viscous", {"foam.cell=0.02", "time.end=7", "material.density=2000", "material.yield_stress=80",
-                     "material.plastic_viscosity=20", "material.critical_shear_rate=0.05", "walls.base=slip",
-                     "forces.gravity=1.6", "foam.max_courant=0.1", "geometry.cone_radius_bottom=0.12",
-                     "output.history_interval=0.5", "output.snapshot_interval=2"});
+      "bi-viscous",
+      {"foam.cell=0.02", "time.end=7", "material.density=2000", "material.yield_stress=80",
+       "material.plastic_viscosity=20", "material.critical_shear_rate=0.05", "walls.base=slip",
+       "forces.gravity=1.6", "foam.max_courant=0.1", "foam.outer_correctors=3",
+       "geometry.cone_radius_bottom=0.12", "output.history_interval=0.5", "output.snapshot_interval=2"});
   const auto values = entries(scene_parameters(scene, false));
   const auto number = [&](const std::string& key) { return std::stod(values.at(key)); };
   EXPECT_EQ(values.at("baseWall"), "{ type slip");
@@ -94,6 +95,7 @@ TEST(CaseFiller, TakesEveryNumberFromTheScene) {
   EXPECT_EQ(number("concreteDensity"), 2000.0);
   EXPECT_EQ(number("endTime"), 7.0);
   EXPECT_EQ(number("maxCourant"), 0.1);
+  EXPECT_EQ(number("outerCorrectors"), 3.0);
   EXPECT_DOUBLE_EQ(number("maxDeltaT"), 0.02 * 0.02 * 2000.0 / 20.0);
   EXPECT_EQ(number("coneRadiusBottom"), 0.12);
   EXPECT_EQ(number("sampleInterval"), 0.25);  // of the profiles, which come oftener here

@@ -54,7 +54,8 @@ FoamEstimate estimate_foam(const Scene& scene) {
   estimate.step = largest_foam_step(scene);
   estimate.steps = std::max(1.0, std::ceil(scene.time.end / estimate.step));
   estimate.cost.memory = bytes_of_interfoam + bytes_per_mesh_cell * estimate.cells;
-  estimate.cost.cpu_seconds = estimate.cells * estimate.steps / cell_steps_per_cpu_second;
+  estimate.cost.cpu_seconds =
+      scene.foam.outer_correctors * estimate.cells * estimate.steps / cell_steps_per_cpu_second;
   return estimate;
 }
 

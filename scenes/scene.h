@@ -204,6 +204,7 @@ struct Foam {
   int base_rows = 0;
   /// s, in which air under concrete rises, 0: never; 0.1 with the plug-in, which does it.
   std::optional<double> air_rise_time;
+  int outer_correctors = 1;  ///< how often a step is computed anew with what it has found
   FoamLaws laws = FoamLaws::best;
   FoamMixing mixing = FoamMixing::arithmetic;
   double full_at = 0.5;  ///< of `saturating`: the fraction of concrete from which its stress counts in full

@@ -275,6 +275,8 @@ std::vector<Key> foam_keys() {
       number("foam.air_rise_time", "s", from(0.0, largest_time), AT(draft.scene.foam.air_rise_time),
              "time in which air that a slump has rolled over rises through it (plug-in); 0: it stays")
           .otherwise("0.1 with the plug-in, else 0"),
+      integer("foam.outer_correctors", 1, 50, AT(draft.scene.foam.outer_correctors),
+              "how often a step is computed, each time with the viscosity, flux and front that it has found"),
       choice("foam.laws", AT(draft.scene.foam.laws),
              "whose laws a run takes: those of the rheology plug-in, OpenFOAM's own, or the best there are"),
       choice("foam.mixing", AT(draft.scene.foam.mixing),
