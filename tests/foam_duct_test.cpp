@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "compare/exact/creep.h"
+#include "compare/exact/duct.h"
 #include "compare/exact/solutions.h"
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
@@ -44,14 +45,8 @@ class FoamDuct : public ::testing::Test {
 /// Relative L2 error of a run's last profile against the Bingham fluid's.
 double l2_error(const runs::Run& run, double yield) {
   const compare::exact::DuctFlow exact{{density, yield, viscosity}, height, force};
-  double error = 0.0, scale = 0.0;
-  const auto& profile = run.profiles.back();
-  for (std::size_t i = 0; i < profile.value.size(); ++i) {
-    const double u = exact.velocity(profile.coordinate[i] - 0.5 * height);
-    error += (profile.value[i] - u) * (profile.value[i] - u);
-    scale += u * u;
-  }
-  return std::sqrt(error / scale);
+  return compare::exact::profile_error(run.profiles.back(), height,
+                                       [&](double y) { return exact.velocity(y); });
 }
 
 const std::vector<std::string> steady = {"forces.body_force=[[0.0, 2000.0]]", "time.end=12"};
@@ -98,32 +93,6 @@ TEST_F(FoamDuct, BelowYieldARegularisedFluidCreepsAsFastAsItsLawSays) {
   }
 }
 
-/// When the plug of a Bingham material falls below `slow`, its force stepped down from 2000 N/m3 at zero:
-/// finite differences over half the height, velocities and stresses staggered, the plug held together by a
-/// stiff elasticity.
-double stopping_time(double driving, double yield, double slow) {
-  const int cells = 250;
-  const double dy = 0.5 * height / cells, modulus = 20.0 * 34138.0;
-  const double dt = 0.5 * dy / std::sqrt(modulus / density);
-  const compare::exact::DuctFlow before{{density, yield, viscosity}, height, force};
-  std::vector<double> velocity(cells), stress(cells + 1);  // y from the wall
-  for (int i = 0; i < cells; ++i)
-    velocity[static_cast<std::size_t>(i)] = before.velocity(0.5 * height - (i + 0.5) * dy);
-  for (int i = 0; i <= cells; ++i) stress[static_cast<std::size_t>(i)] = force * (0.5 * height - i * dy);
-  double time = 0.0;
-  for (; velocity.back() > slow && time < 20.0; time += dt) {
-    for (std::size_t i = 0; i < velocity.size(); ++i)
-      velocity[i] += dt / density * (driving + (stress[i + 1] - stress[i]) / dy);
-    for (std::size_t i = 0; i + 1 < stress.size(); ++i) {
-      const double gradient = i == 0 ? velocity[0] / (0.5 * dy) : (velocity[i] - velocity[i - 1]) / dy;
-      const double trial = stress[i] + modulus * dt * gradient;
-      const double rate = std::max(std::abs(trial) - yield, 0.0) / (viscosity + modulus * dt);
-      stress[i] = trial - std::copysign(modulus * dt * rate, trial);
-    }
-  }
-  return time;
-}
-
 TEST_F(FoamDuct, SteppedDownBelowYieldTheElastoViscoplasticMaterialStopsInTimeAndStays) {
   const double slow = 2e-3;
   const auto result = run("elasto-viscoplastic", {"time.end=20"});
@@ -133,7 +102,8 @@ TEST_F(FoamDuct, SteppedDownBelowYieldTheElastoViscoplasticMaterialStopsInTimeAn
   for (std::size_t i = 1; i < time.size() && stopped == 0.0; ++i)
     if (time[i] > 12.1 && plug[i] < slow)
       stopped = time[i - 1] + (time[i] - time[i - 1]) * (plug[i - 1] - slow) / (plug[i - 1] - plug[i]) - 12.0;
-  const double expected = stopping_time(360.0, 100.0, slow);
+  const double expected =
+      compare::exact::duct_stopping_time({{density, 100.0, viscosity}, height, force}, 360.0, slow);
   std::printf("    stops after %.4g s, finite differences %.4g s; at 20 s it moves at %.2g m/s\n", stopped,
               expected, plug.back());
   EXPECT_NEAR(stopped, expected, 0.02 * expected);

@@ -8,83 +8,15 @@
 #include <cstdio>
 #include <numbers>
 
-#include "mpm/solver/test_bodies.h"
+#include "mpm/verification/known_motions.h"
 
 using namespace flowrest::mpm;
 using namespace flowrest::mpm::test;
+using namespace flowrest::mpm::known;
 
 namespace {
 
-constexpr double gravity = 9.81;
 constexpr double degree = std::numbers::pi / 180.0;
-
-/// Directions of a wall in the plane of the first and the last axis, turned from the grid by `angle`.
-struct Frame {
-  Vector along{}, up{};
-  Frame(double angle, int dimension) {
-    const auto last = static_cast<std::size_t>(dimension - 1);
-    along[0] = std::cos(angle);
-    along[last] = std::sin(angle);
-    up[0] = -std::sin(angle);
-    up[last] = std::cos(angle);
-  }
-};
-
-Vector combined(const Vector& origin, const Frame& f, double along, double up, double across) {
-  Vector x;
-  for (std::size_t a = 0; a < 3; ++a) x[a] = origin[a] + along * f.along[a] + up * f.up[a];
-  if (f.up[1] == 0.0 && f.along[1] == 0.0) x[1] += across;
-  return x;
-}
-
-Seed seed_at(const Vector& x, double cell, double volume, int dimension) {
-  Seed s;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
-    s.cell[a] = static_cast<int>(std::floor(x[a] / cell));
-    s.position[a] = x[a] / cell - s.cell[a];
-  }
-  s.volume = volume;
-  return s;
-}
-
-constexpr Vector place_on_wall = {0.5, 0.5, 0.5};
-
-/// A block whose base lies on a wall through `place_on_wall`, `length` by `height` cells (and four across in
-/// space), three particles along a cell's edge, on a lattice along the wall.
-std::vector<Seed> block_on_wall(const SolverSettings& s, const Frame& f, int length, int height) {
-  std::vector<Seed> seeds;
-  const double spacing = s.cell / 3.0;
-  const int across = s.dimension == 3 ? 12 : 1;
-  for (int i = 0; i < 3 * length; ++i)
-    for (int k = 0; k < 3 * height; ++k)
-      for (int j = 0; j < across; ++j)
-        seeds.push_back(seed_at(combined(place_on_wall, f, (i + 0.5 - 1.5 * length) * spacing,
-                                         (k + 0.5) * spacing, s.dimension == 3 ? (j + 0.5) * spacing : 0.0),
-                                s.cell, std::pow(spacing, s.dimension), s.dimension));
-  return seeds;
-}
-
-Wall plane_wall(int dimension, const Frame& f, Contact contact, double friction) {
-  const Extent extent = {{0.0, 0.2, 0.0}, {1.6, dimension == 3 ? 0.8 : 1.6, 1.6}};
-  Wall wall;
-  wall.name = "plane";
-  wall.shape = std::make_shared<HalfSpace>(dimension, place_on_wall, f.up, extent);
-  wall.contact = contact;
-  wall.friction = friction;
-  return wall;
-}
-
-/// Mean velocity along a direction, m/s.
-double mean_velocity(Solver& solver, const Vector& direction) {
-  double momentum = 0.0, mass = 0.0;
-  solver.visit([&](const ParticleBatch& b) {
-    for (std::size_t i = 0; i < b.count; ++i) {
-      mass += b.mass[i];
-      for (std::size_t a = 0; a < 3; ++a) momentum += b.mass[i] * b.velocity[a][i] * direction[a];
-    }
-  });
-  return momentum / mass;
-}
 
 double lowest_distance(Solver& solver, const Wall& wall, double time) {
   double lowest = 1.0;
@@ -101,29 +33,9 @@ SolverSettings elastic(const Variant& v) {
   return s;
 }
 
-/// Acceleration over `time` of a block on a wall that is turned by `angle` from the grid, once the block has
-/// settled on the level wall and the wall is then inclined by `slope` to the horizontal, m/s2.
-double sliding_acceleration(const Variant& v, double angle, double slope, double friction, double time) {
-  SolverSettings s = elastic(v);
-  const Frame f(angle, v.dimension);
-  s.walls = {plane_wall(v.dimension, f, Contact::friction, friction)};
-  // A flat slab: a tall elastic block takes to rocking, which real ones do too (friction-driven flutter).
-  auto solver = make_solver(s, block_on_wall(s, f, 12, 2));
-  const double step = usual_step(s);
-  const auto advance = [&](double inclination, double span) {
-    std::array<double, 3> pull{};
-    for (std::size_t a = 0; a < 3; ++a)
-      pull[a] = gravity * (std::sin(inclination) * f.along[a] - std::cos(inclination) * f.up[a]);
-    const int steps = static_cast<int>(std::ceil(span / step));
-    for (int i = 0; i < steps; ++i) solver->step(step, pull);
-    return steps * step;
-  };
-  advance(0.0, 0.3);
-  // Inclining it takes weight off the wall, and the block bounces on it for a while.
-  advance(slope, 0.3);
-  const double early = mean_velocity(*solver, f.along);
-  const double span = advance(slope, time);
-  return (mean_velocity(*solver, f.along) - early) / span;
+/// On a wall that is turned by `angle` from the grid. m/s2
+double acceleration_of(const Variant& v, double angle, double slope, double friction, double time) {
+  return sliding_acceleration(concrete(v), {angle, slope, friction}, time);
 }
 
 }  // namespace
@@ -174,15 +86,14 @@ TEST(WallFriction, ABlockSlidesAsCoulombSaysWhateverTheWallsAngleToTheGrid) {
   const double exact = gravity * (std::sin(slope) - friction * std::cos(slope));
   for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip})
     for (const double angle : {0.0, 15.0, 30.0, 45.0, 68.0}) {
-      const double a =
-          sliding_acceleration({2, false, transfer, false}, angle * degree, slope, friction, 0.3);
+      const double a = acceleration_of({2, false, transfer, false}, angle * degree, slope, friction, 0.3);
       std::printf("    %s, %2.0f degrees to the grid: %.4f of g (sin - mu cos)\n",
                   name_of({2, false, transfer, false}).c_str(), angle, a / exact);
       // Measured: quadratic 2e-4, linear 1e-3 to 1e-2.
       EXPECT_NEAR(a / exact, 1.0, transfer == Transfer::quadratic_apic ? 0.002 : 0.015);
     }
   for (const double angle : {0.0, 26.0}) {
-    const double a = sliding_acceleration({3}, angle * degree, slope, friction, 0.2);
+    const double a = acceleration_of({3}, angle * degree, slope, friction, 0.2);
     std::printf("    3D, %2.0f degrees to the grid: %.4f of g (sin - mu cos)\n", angle, a / exact);
     EXPECT_NEAR(a / exact, 1.0, 0.01);
   }
@@ -193,7 +104,7 @@ TEST(WallFriction, ABlockSticksBelowTheFrictionAngle) {
   for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip})
     for (const double angle : {0.0, 15.0, 45.0}) {
       const Variant v = {2, false, transfer, false};
-      const double a = sliding_acceleration(v, angle * degree, 14.0 * degree, 0.3, 0.3);
+      const double a = acceleration_of(v, angle * degree, 14.0 * degree, 0.3, 0.3);
       std::printf("    %s, %2.0f degrees to the grid: %.4f m/s2\n", name_of(v).c_str(), angle, a);
       EXPECT_NEAR(a, 0.0, 0.01 * gravity * std::sin(14.0 * degree));
     }

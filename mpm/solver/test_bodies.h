@@ -64,10 +64,9 @@ inline double usual_step(const SolverSettings& s) {
 }
 
 /// A block of whole cells [first, last), `per_axis` particles along each axis in each, jittered where
-/// `random` is given. Each particle's volume differs a little, so that its mass tells it apart whatever order
-/// particles come in.
-inline std::vector<Seed> block(const SolverSettings& s, const CellIndex& first, const CellIndex& last,
-                               int per_axis, Random* random = nullptr) {
+/// `random` is given.
+inline std::vector<Seed> even_block(const SolverSettings& s, const CellIndex& first, const CellIndex& last,
+                                    int per_axis, Random* random = nullptr) {
   std::vector<Seed> seeds;
   const int depth = s.dimension == 3 ? per_axis : 1;
   const double volume = std::pow(s.cell / per_axis, s.dimension);
@@ -83,10 +82,18 @@ inline std::vector<Seed> block(const SolverSettings& s, const CellIndex& first, 
               for (std::size_t x = 0; x < static_cast<std::size_t>(s.dimension); ++x)
                 seed.position[x] = (site[x] + (random ? random->uniform() : 0.5)) / per_axis;
               const double radius = (i + seed.position[0]) * s.cell;
-              seed.volume = volume * (s.axisymmetric ? 2.0 * std::numbers::pi * radius : 1.0) *
-                            (1.0 + 1e-5 * static_cast<double>(seeds.size()));
+              seed.volume = volume * (s.axisymmetric ? 2.0 * std::numbers::pi * radius : 1.0);
               seeds.push_back(seed);
             }
+  return seeds;
+}
+
+/// The same, each particle's volume a little larger than the last one's, so that its mass tells it apart
+/// whatever order particles come in.
+inline std::vector<Seed> block(const SolverSettings& s, const CellIndex& first, const CellIndex& last,
+                               int per_axis, Random* random = nullptr) {
+  auto seeds = even_block(s, first, last, per_axis, random);
+  for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i].volume *= 1.0 + 1e-5 * static_cast<double>(i);
   return seeds;
 }
 

@@ -9,49 +9,22 @@
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/test_runs.h"
 #include "mpm/solver/settings.h"
-#include "mpm/solver/test_bodies.h"
+#include "mpm/verification/known_motions.h"
 #include "runs/process.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
 using namespace flowrest::mpm::test;
+using namespace flowrest::mpm::known;
 
 TEST(Column, AtRestItsAveragedPressureIsTheWeightAbove) {
   for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip}) {
     const int across = 8, high = 20;
     SolverSettings s = concrete({2, false, transfer, false});
-    s.law = Law::newtonian;
-    s.flow.plastic_viscosity = 500.0;  // stills the column's swing (47 rad/s) at 9 a second
-    s.bounds[0] = {PlaneWall::slip, PlaneWall::slip, 0, across, false};
-    s.bounds[1].lower = PlaneWall::slip;
-    auto solver = make_solver(s, block(s, {0, 0, 0}, {across, high, 0}, 3));
-    for (int i = 0; i < 4000; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
-    // Row by row of cells against the weight above the row and half its own, per width. Quadratic functions
-    // carry the particles' pressure; of linear ones a cell carries the sum of volume times pressure, over its
-    // own volume, which differ where a lattice row more or less than three happens to lie in the cell.
-    struct Row {
-      double mass = 0.0, volume = 0.0, thrust = 0.0;
-    };
-    std::map<int, Row> rows;
-    solver->visit([&](const ParticleBatch& b) {
-      for (std::size_t i = 0; i < b.count; ++i) {
-        Row& row = rows[static_cast<int>(b.position[1][i] / s.cell)];
-        row.mass += b.mass[i];
-        row.volume += b.volume[i];
-        row.thrust += b.volume[i] * b.raw_pressure[i];
-      }
-    });
-    const double bottom = s.density * 9.81 * high * s.cell;
-    double above = 0.0, worst = 0.0;
-    for (auto found = rows.rbegin(); found != rows.rend(); ++found) {
-      const Row& row = found->second;
-      const double weight = (above + 0.5 * row.mass) * 9.81 / (across * s.cell);
-      const double carried =
-          row.thrust / (transfer == Transfer::quadratic_apic ? row.volume : across * s.cell * s.cell);
-      worst = std::max(worst, std::abs(carried - weight));
-      above += row.mass;
-    }
-    EXPECT_NEAR(above, s.density * across * high * s.cell * s.cell, 0.01 * above)
+    auto solver = settled_column(s, block(s, {0, 0, 0}, {across, high, 0}, 3), across, 4000 * usual_step(s));
+    const double bottom = s.density * gravity * high * s.cell;
+    const auto [worst, lowest, mass] = column_pressure(*solver, s, across);
+    EXPECT_NEAR(mass, s.density * across * high * s.cell * s.cell, 0.01 * mass)
         << "kg, seeded slightly unevenly";
     std::printf("    worst row off by %.2g of the pressure at the bottom\n", worst / bottom);
     EXPECT_LT(worst, 0.02 * bottom);
@@ -65,13 +38,9 @@ TEST(Column, ThePressureWrittenOutIsSmooth) {
   for (const auto transfer : {Transfer::quadratic_apic, Transfer::linear_flip}) {
     const int across = 8, high = 20;
     SolverSettings s = concrete({2, false, transfer, false});
-    s.law = Law::newtonian;
-    s.flow.plastic_viscosity = 500.0;
-    s.bounds[0] = {PlaneWall::slip, PlaneWall::slip, 0, across, false};
-    s.bounds[1].lower = PlaneWall::slip;
     Random random(11);
-    auto solver = make_solver(s, block(s, {0, 0, 0}, {across, high, 0}, 4, &random));
-    for (int i = 0; i < 4000; ++i) solver->step(usual_step(s), {0.0, -9.81, 0.0});
+    auto solver =
+        settled_column(s, block(s, {0, 0, 0}, {across, high, 0}, 4, &random), across, 4000 * usual_step(s));
     AveragedPressure averaged(2, s.cell);
     solver->visit([&](const ParticleBatch& b) { averaged.add(b); });
     double top = 0.0, raw = 0.0, smooth = 0.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/exact/creep.h"
+#include "compare/exact/duct.h"
 #include "compare/exact/solutions.h"
 #include "studies/verification/scene_runs.h"
 
@@ -21,21 +22,6 @@ constexpr double regularisation = 10.0;                             // s
 
 /// Velocities on the points of a profile, y from the middle.
 using Velocity = std::function<double(double)>;
-
-double relative_l2(const runs::Profile& profile, const Velocity& exact, double middle) {
-  double error = 0.0, scale = 0.0;
-  for (std::size_t i = 0; i < profile.value.size(); ++i) {
-    const double u = exact(profile.coordinate[i] - middle);
-    error += (profile.value[i] - u) * (profile.value[i] - u);
-    scale += u * u;
-  }
-  return std::sqrt(error / scale);
-}
-
-/// Profiles count y from the lower plate or from the middle.
-double middle_of(const runs::Profile& profile) {
-  return profile.coordinate.front() < 0.0 ? 0.0 : 0.5 * height;
-}
 
 /// v(y) = (1/F) int_{F y}^{F H/2} g(tau) dtau by Simpson's rule, g the law's shear rate at a stress.
 double regularised_velocity(const RegularisedFluid& fluid, double force, double from_middle) {
@@ -58,6 +44,12 @@ struct Variant {
   bool quick = false;
 };
 
+RegularisedFluid fluid_of(const Variant& v, double yield) {
+  using Law = RegularisedFluid::Law;
+  return {v.model == "papanastasiou" ? Law::papanastasiou : Law::bi_viscous, yield, viscosity,
+          regularisation};
+}
+
 std::string cell_key(const Variant& v) { return v.solver == "foam" ? "foam.cell" : "mpm.cell"; }
 
 std::vector<std::string> settings_of(const Variant& v, double cell, std::vector<std::string> more) {
@@ -68,12 +60,25 @@ std::vector<std::string> settings_of(const Variant& v, double cell, std::vector<
   return more;
 }
 
+/// A case of a variant on the usual grids; what it is compared with is left open.
+Case case_of(const Variant& v, const std::string& name, double cost) {
+  Case c;
+  c.name = name;
+  c.variant = v.words;
+  c.grids = {0.05, 0.025, 0.0125};
+  c.largest_error = v.largest_error;
+  c.least_order = v.least_order;
+  c.quick = v.quick;
+  c.cost = cost;
+  return c;
+}
+
 /// The flow of a steadily driven duct at its end.
 Measured steady(const Variant& v, double cell, std::vector<std::string> more, const Velocity& exact,
                 const Workplace& place) {
   const auto run = run_scene("poiseuille-step-down", settings_of(v, cell, std::move(more)), v.solver, place);
   const auto& profile = run.profiles.back();
-  return {relative_l2(profile, exact, middle_of(profile)), run.history.at("mean_velocity_m_s").back()};
+  return {compare::exact::profile_error(profile, height, exact), run.history.at("mean_velocity_m_s").back()};
 }
 
 /// At 300 Pa s it is steady within a second. A tenth of the benchmark's force: an elastic fluid whose stress
@@ -81,19 +86,12 @@ Measured steady(const Variant& v, double cell, std::vector<std::string> more, co
 Case newtonian(const Variant& v) {
   const double force = 200.0, eta = 300.0;
   const DuctFlow flow{{density, 0.0, eta}, height, force};
-  Case c;
-  c.name = "Poiseuille flow, Newtonian";
-  c.variant = v.words;
+  Case c = case_of(v, "Poiseuille flow, Newtonian", 3.0);
   c.against = "u = F ((H/2)^2 - y^2) / (2 eta)";
   c.norm = "relative L2 of the velocity";
   c.value_name = "mean velocity";
   c.value_unit = "m/s";
   c.exact_value = flow.mean_velocity();
-  c.grids = {0.05, 0.025, 0.0125};
-  c.largest_error = v.largest_error;
-  c.least_order = v.least_order;
-  c.quick = v.quick;
-  c.cost = 3.0;
   c.compute = [=](double cell, const Workplace& place) {
     return steady(
         v, cell,
@@ -107,26 +105,17 @@ Case newtonian(const Variant& v) {
 Case bingham(const Variant& v, double yield) {
   const double force = 2000.0;
   const DuctFlow flow{{density, yield, viscosity}, height, force};
-  const RegularisedFluid fluid{
-      v.model == "papanastasiou" ? RegularisedFluid::Law::papanastasiou : RegularisedFluid::Law::bi_viscous,
-      yield, viscosity, regularisation};
+  const RegularisedFluid fluid = fluid_of(v, yield);
   const bool exactly_bingham = v.model == "elasto-viscoplastic";
   const Velocity exact = exactly_bingham
                              ? Velocity([=](double y) { return flow.velocity(y); })
                              : Velocity([=](double y) { return regularised_velocity(fluid, force, y); });
-  Case c;
-  c.name = fmt::format("Poiseuille flow, yield stress {:g} Pa", yield);
-  c.variant = v.words;
+  Case c = case_of(v, fmt::format("Poiseuille flow, yield stress {:g} Pa", yield), 10.0);
   c.against = exactly_bingham ? "Yu et al. 2026, Eqs. 48-50" : "quadrature of the fluid's own law";
   c.norm = "relative L2 of the velocity";
   c.value_name = "mean velocity";
   c.value_unit = "m/s";
   if (exactly_bingham) c.exact_value = flow.mean_velocity();
-  c.grids = {0.05, 0.025, 0.0125};
-  c.largest_error = v.largest_error;
-  c.least_order = v.least_order;
-  c.quick = v.quick;
-  c.cost = 10.0;
   c.compute = [=](double cell, const Workplace& place) {
     return steady(
         v, cell,
@@ -137,43 +126,13 @@ Case bingham(const Variant& v, double yield) {
   return c;
 }
 
-/// When a Bingham fluid stops whose force steps down from the steady state under 2000 N/m3: the time at which
-/// its middle falls below `slow`, by finite differences over half the height, velocities and stresses
-/// staggered. A stiff elasticity holds the plug together; every step's stress is relaxed to the flow law.
-double stopping_time(double driving, double yield, double slow) {
-  constexpr int cells = 200;
-  const DuctFlow flow{{density, yield, viscosity}, height, 2000.0};
-  const double dy = 0.5 * height / cells, modulus = 6e5, dt = 0.5 * dy / std::sqrt(modulus / density);
-  std::vector<double> velocity, stress;
-  for (int i = 0; i < cells; ++i) velocity.push_back(flow.velocity(0.5 * height - (i + 0.5) * dy));
-  for (int i = 0; i <= cells; ++i) stress.push_back(2000.0 * (0.5 * height - i * dy));
-  double time = 0.0;
-  for (; velocity.back() > slow && time < 20.0; time += dt) {
-    for (std::size_t i = 0; i < velocity.size(); ++i)
-      velocity[i] += dt / density * (driving + (stress[i + 1] - stress[i]) / dy);
-    for (std::size_t i = 0; i + 1 < stress.size(); ++i) {
-      const double gradient = i == 0 ? velocity[0] / (0.5 * dy) : (velocity[i] - velocity[i - 1]) / dy;
-      const double trial = stress[i] + modulus * dt * gradient;
-      const double rate = std::max(std::abs(trial) - yield, 0.0) / (viscosity + modulus * dt);
-      stress[i] = trial - std::copysign(modulus * dt * rate, trial);
-    }
-  }
-  return time;
-}
-
 Case stopping(const Variant& v) {
   const double slow = 2e-3;
-  Case c;
-  c.name = "Duct stepped down below yield, stop";
-  c.variant = v.words;
+  Case c = case_of(v, "Duct stepped down below yield, stop", 12.0);
   c.against = "finite differences in one dimension";
   c.norm = "relative error of the stopping time";
   c.value_name = "stopping time";
   c.value_unit = std::string("s");
-  c.grids = {0.05, 0.025, 0.0125};
-  c.largest_error = v.largest_error;
-  c.quick = v.quick;
-  c.cost = 12.0;
   c.compute = [=](double cell, const Workplace& place) {
     const auto run =
         run_scene("poiseuille-step-down",
@@ -183,7 +142,8 @@ Case stopping(const Variant& v) {
       if (time[i] <= 12.0 || plug[i] >= slow) continue;
       const double stop =
           time[i - 1] + (time[i] - time[i - 1]) * (plug[i - 1] - slow) / (plug[i - 1] - plug[i]) - 12.0;
-      const double exact = stopping_time(360.0, 100.0, slow);
+      const double exact =
+          compare::exact::duct_stopping_time({{density, 100.0, viscosity}, height, 2000.0}, 360.0, slow);
       return Measured{std::abs(stop / exact - 1.0), stop};
     }
     throw runs::NumericsError("it does not stop");
@@ -192,23 +152,14 @@ Case stopping(const Variant& v) {
 }
 
 Case creeping(const Variant& v) {
-  const RegularisedFluid fluid{
-      v.model == "papanastasiou" ? RegularisedFluid::Law::papanastasiou : RegularisedFluid::Law::bi_viscous,
-      100.0, viscosity, regularisation};
+  const RegularisedFluid fluid = fluid_of(v, 100.0);
   const double exact = compare::exact::duct_creep(fluid, height, 360.0);
-  Case c;
-  c.name = "Duct below yield, creep";
-  c.variant = v.words;
+  Case c = case_of(v, "Duct below yield, creep", 2.0);
   c.against = "quadrature of the fluid's own law";
   c.norm = "relative error of the middle's velocity";
   c.value_name = "creep of the middle";
   c.value_unit = "m/s";
   c.exact_value = exact;
-  c.grids = {0.05, 0.025, 0.0125};
-  c.largest_error = v.largest_error;
-  c.least_order = v.least_order;
-  c.quick = v.quick;
-  c.cost = 2.0;
   c.compute = [=](double cell, const Workplace& place) {
     const auto run = run_scene("poiseuille-step-down",
                                settings_of(v, cell,
@@ -225,7 +176,8 @@ Case creeping(const Variant& v) {
 
 std::vector<Case> duct_cases() {
   const std::string evp = "elasto-viscoplastic";
-  const std::vector<std::string> linear = {"mpm.scheme=linear-flip"}, single = {"mpm.precision=float"};
+  const std::vector<std::string> linear = {"mpm.scheme=linear-flip"}, single = {"mpm.precision=float"},
+                                 single_linear = {"mpm.scheme=linear-flip", "mpm.precision=float"};
   std::vector<Case> cases = {
       newtonian({"mpm", "newtonian", {}, "MPM quadratic-apic, double", 1e-3, 1.8, true}),
       newtonian({"mpm", "newtonian", single, "MPM quadratic-apic, float", 1e-3, {}, true}),
@@ -233,13 +185,17 @@ std::vector<Case> duct_cases() {
       bingham({"mpm", evp, {}, "MPM quadratic-apic, elasto-viscoplastic, double", 2e-3, {}, true}, 100.0),
       bingham({"mpm", evp, single, "MPM quadratic-apic, elasto-viscoplastic, float", 2e-3}, 100.0),
       bingham({"mpm", evp, linear, "MPM linear-flip, elasto-viscoplastic, double", 5e-2}, 100.0),
+      newtonian({"mpm", "newtonian", single_linear, "MPM linear-flip, float", 5e-2}),
+      bingham({"mpm", evp, single_linear, "MPM linear-flip, elasto-viscoplastic, float", 5e-2}, 100.0),
       bingham({"mpm", evp, {}, "MPM quadratic-apic, elasto-viscoplastic, double", 2e-3}, 10.0),
       bingham({"mpm", evp, {}, "MPM quadratic-apic, elasto-viscoplastic, double", 3e-3}, 200.0),
       bingham({"mpm", "papanastasiou", {}, "MPM quadratic-apic, papanastasiou, double", 5e-3}, 100.0),
       bingham({"mpm", "bi-viscous", {}, "MPM quadratic-apic, bi-viscous, double", 5e-3}, 100.0),
+      bingham({"mpm", "papanastasiou", single, "MPM quadratic-apic, papanastasiou, float", 5e-3}, 100.0),
       stopping({"mpm", evp, {}, "MPM quadratic-apic, elasto-viscoplastic, double", 0.02, {}, true}),
       stopping({"mpm", evp, single, "MPM quadratic-apic, elasto-viscoplastic, float", 0.02}),
       creeping({"mpm", "papanastasiou", {}, "MPM quadratic-apic, papanastasiou, double", 0.05, {}, true}),
+      creeping({"mpm", "papanastasiou", single, "MPM quadratic-apic, papanastasiou, float", 0.05}),
       creeping({"mpm", "bi-viscous", {}, "MPM quadratic-apic, bi-viscous, double", 0.05}),
   };
 #ifdef FLOWREST_HAS_FOAM
