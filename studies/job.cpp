@@ -37,11 +37,22 @@ std::string last_words(const fs::path& log) {
   return last.starts_with(prefix) ? last.substr(prefix.size()) : last;
 }
 
+/// Whether a run was made with the settings that were asked for. What a scene leaves to OpenFOAM, the rows at
+/// the base (0) and the time in which air rises, its run says.
+bool made_as_asked(Json made, const Json& asked) {
+  const auto foam = asked.find("foam");
+  if (foam != asked.end() && made.contains("foam")) {
+    if (foam->value("base_rows", 0) == 0) made["foam"]["base_rows"] = 0;
+    if (!foam->contains("air_rise_time")) made["foam"].erase("air_rise_time");
+  }
+  return made == asked;
+}
+
 /// How the run directory says that this run ended; missing where it says anything else.
 Outcome ending_in(const fs::path& directory, const Json& settings) {
   try {
     const runs::Run run = runs::read_run(directory);
-    if (run.info.value("settings", Json()) != settings) return {};
+    if (!made_as_asked(run.info.value("settings", Json()), settings)) return {};
     const std::string reason = run.info.value("reason", "");
     switch (run.status()) {
       case runs::Status::at_rest:
@@ -90,7 +101,7 @@ void mark(const Folder& folder, const Job& job, const Outcome& outcome, double w
 /// Whether the run directory holds a part of this run that can be gone on with.
 bool has_begun(const Folder& folder, const Job& job) {
   const Json info = read_json(folder.run(job.id) / "run.json");
-  return info.is_object() && info.value("settings", Json()) == job.settings &&
+  return info.is_object() && made_as_asked(info.value("settings", Json()), job.settings) &&
          info.value("status", "") != to_string(runs::Status::failed);
 }
 
@@ -109,7 +120,7 @@ std::vector<std::string> arguments_of(const Folder& folder, const Job& job, bool
 void clear_unusable(const Folder& folder, const Job& job) {
   const fs::path run = folder.run(job.id);
   const Json info = read_json(run / "run.json");
-  if (fs::exists(run) && (!info.is_object() || info.value("settings", Json()) != job.settings))
+  if (fs::exists(run) && (!info.is_object() || !made_as_asked(info.value("settings", Json()), job.settings)))
     fs::remove_all(run);
 }
 

@@ -121,6 +121,21 @@ TEST_F(StudyResults, OnlyWhatEndedAndSaysSoItselfCounts) {
   for (std::size_t i = 1; i < verdicts.size(); ++i) EXPECT_EQ(verdicts[i], Verdict::missing) << i;
 }
 
+TEST_F(StudyResults, WhatASceneLeavesToOpenFoamMayBeFilledIn) {
+  Point filled = points[0];
+  filled.scene->foam.base_rows = 4;
+  filled.scene->foam.air_rise_time = 0.1;
+  write_run(filled, 500.0, 1.0);
+  mark(points[0], "finished");
+  filled = points[1];
+  filled.scene->foam.max_courant = 0.1;  // which the scene did say
+  write_run(filled, 500.0, 1.0);
+  mark(points[1], "finished");
+  const auto results = collect(folder, study, points, "").results;
+  EXPECT_EQ(results[0].verdict, Verdict::sound);
+  EXPECT_EQ(results[1].verdict, Verdict::missing);
+}
+
 TEST_F(StudyResults, AStoppedRunKeepsItsReasonAndHasNoError) {
   write_run(points[0], 500.0, 1.0, runs::Status::failed);
   mark(points[0], "stopped");
