@@ -68,10 +68,14 @@ scenes::Kind common_kind(const std::vector<runs::Run>& runs) {
     if (kind_of(run) != kind)
       throw RunError(fmt::format("{}: a {} cannot be compared with a {} ({})", run.directory.string(),
                                  kind_of(run), kind, runs.front().directory.string()));
-  if (kind != "slump" && kind != "duct")
-    throw RunError(
-        fmt::format("{}: kind '{}' is unknown; allowed: slump, duct", runs.front().directory.string(), kind));
-  return kind == "slump" ? scenes::Kind::slump : scenes::Kind::duct;
+  std::string allowed;
+  for (const auto known : {scenes::Kind::slump, scenes::Kind::duct, scenes::Kind::l_box,
+                           scenes::Kind::v_funnel, scenes::Kind::dam_break}) {
+    if (kind == scenes::to_string(known)) return known;
+    allowed += (allowed.empty() ? "" : ", ") + scenes::to_string(known);
+  }
+  throw RunError(
+      fmt::format("{}: kind '{}' is unknown; allowed: {}", runs.front().directory.string(), kind, allowed));
 }
 
 /// MPM before OpenFOAM before others, exact solutions last; within a solver the law that stops first; else as
@@ -179,6 +183,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   compare_pairs(comparison);
   fill_square(comparison);
   note_missing(comparison);
+  note_walls(comparison);
   describe(comparison);
   return comparison;
 }

@@ -41,12 +41,17 @@ enum class Cause {
 };
 std::string to_string(Cause);
 
+/// A number read off a run, in the unit of its name, and how well it is known by another grid.
+struct ReadValue {
+  std::optional<double> value, uncertainty;
+};
+
 /// What is measured of one run. Spreads in m, velocities in m/s. Empty: not measurable, or without meaning
 /// for this run.
 struct Measures {
   std::optional<double> end;          ///< s, the last time recorded
-  std::optional<double> gauge_end;    ///< spread (m) or plug velocity (m/s) at the end
-  std::optional<double> uncertainty;  ///< m, of the spread at the end, slumps: the largest of what is known
+  std::optional<double> gauge_end;    ///< of the gauge, SI, at the end
+  std::optional<double> uncertainty;  ///< of that, SI, all but ducts: the largest of what is known
   std::string uncertainty_source;     ///< what it is: "the grid study among these runs", "a cell", ...
   std::optional<double> spread_1_5mm,
       spread_6mm;                       ///< of the last profile: the sensitivity to the 3 mm threshold
@@ -67,6 +72,7 @@ struct Measures {
   std::optional<double> volume_drift;               ///< (last - first)/first
   std::optional<double> mass_drift;
   std::optional<double> cpu, wall, cpu_per_simulated_second;  ///< s
+  std::map<std::string, ReadValue> readings;                  ///< readings_of(kind), by their quantity
 };
 
 /// A run under comparison.
@@ -80,8 +86,9 @@ struct RunView {
   bool noisy = false;
   std::string noise;    ///< why
   std::string trouble;  ///< "interrupted at 12 s", "failed at 3 s: why"; empty where the run came to its end
-  Series gauge;         ///< spread (m) or plug velocity (m/s)
-  Series shear_rate;    ///< 99th percentile, 1/s
+  std::string walls_differ;  ///< where its walls are not those of the scene, in words; empty where they are
+  Series gauge;       ///< gauge_of(kind), SI: spread or front (m), plug velocity (m/s), discharged fraction
+  Series shear_rate;  ///< 99th percentile, 1/s
   Measures measures;
 
   /// The profile on `grid` at a time, linear between the recorded ones; none where the run has nothing to
@@ -165,7 +172,8 @@ void describe(Comparison&);
 
 nlohmann::ordered_json to_json(const Comparison&);
 
-/// Writes comparison.json, measures.csv, spread.csv (velocity.csv of a duct), profiles.csv and index.html.
+/// Writes comparison.json, measures.csv, profiles.csv, index.html and the gauge of every run: spread.csv,
+/// velocity.csv, front.csv or discharged.csv.
 void write_comparison(const Comparison&, const std::filesystem::path& report);
 
 /// Writes the page's figures for papers into `report`/figures, as SVG and PNG.

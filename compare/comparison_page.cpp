@@ -8,6 +8,7 @@
 #include <set>
 
 #include "compare/fields/section.h"
+#include "compare/measures/gauges.h"
 #include "compare/run_view.h"
 #include "compare/words.h"
 
@@ -32,31 +33,28 @@ namespace {
 constexpr int history_samples = 500;
 
 bool is_slump(const Comparison& comparison) { return comparison.kind == scenes::Kind::slump; }
-double scale_of(const Comparison& comparison) { return is_slump(comparison) ? 1e3 : 1.0; }
-std::string unit_of(const Comparison& comparison) { return is_slump(comparison) ? "mm" : "m/s"; }
-std::string gauge_name(const Comparison& comparison) {
-  return is_slump(comparison) ? "spread" : "plug velocity";
+bool is_duct(const Comparison& comparison) { return comparison.kind == scenes::Kind::duct; }
+double scale_of(const Comparison& comparison) { return gauge_of(comparison.kind).shown; }
+std::string unit_of(const Comparison& comparison) { return gauge_of(comparison.kind).unit; }
+std::string gauge_name(const Comparison& comparison) { return gauge_of(comparison.kind).name; }
+std::string speed_unit(const Comparison& comparison) { return is_duct(comparison) ? "m/s" : "mm/s"; }
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
-std::string speed_unit(const Comparison& comparison) { return is_slump(comparison) ? "mm/s" : "m/s"; }
 
 constexpr Format fixed(int digits) { return {Format::Kind::fixed, digits}; }
 constexpr Format signed_fixed(int digits) { return {Format::Kind::signed_fixed, digits}; }
 constexpr Format significant(int digits) { return {Format::Kind::significant, digits}; }
 
-/// Colour tells the law and dashes tell the solver, so that a figure shows by itself which difference is
-/// which; runs that agree in both are told apart by further dashes. Exact solutions are drawn in ink.
+/// Runs that agree in solver and law are told apart by further dashes.
 std::vector<report::Entry> entries_of(const Comparison& comparison) {
   std::vector<report::Entry> entries;
   std::set<std::pair<int, int>> taken;
   for (const RunView& view : comparison.runs) {
-    report::Entry entry{view.label, 0, 0, view.noisy ? view.noise : "", view.trouble};
-    entry.colour = view.exact                            ? -1
-                   : view.model == "elasto-viscoplastic" ? 0
-                   : view.model == "papanastasiou"       ? 1
-                   : view.model == "bi-viscous"          ? 2
-                   : view.model == "newtonian"           ? 3
-                                                         : 4;
-    entry.dash = view.exact ? 5 : view.solver == "mpm" ? 0 : view.solver == "foam" ? 1 : 2;
+    report::Entry entry = entry_of(view.label, view.solver, view.model);
+    entry.noise = view.noisy ? view.noise : "";
+    entry.trouble = view.trouble;
     while (!taken.insert({entry.colour, entry.dash % 8}).second && taken.size() < 64) ++entry.dash;
     entries.push_back(entry);
   }
@@ -80,7 +78,7 @@ Axis time_axis(const Comparison& comparison) {
 
 Plot gauge_plot(const Comparison& comparison) {
   const bool slump = is_slump(comparison);
-  Plot plot{slump ? "spread" : "velocity",
+  Plot plot{gauge_of(comparison.kind).key,
             gauge_name(comparison) + " against time",
             "",
             time_axis(comparison),
@@ -88,11 +86,7 @@ Plot gauge_plot(const Comparison& comparison) {
             {},
             true,
             std::nullopt};
-  plot.caption =
-      slump
-          ? "Spread: twice the radius at which the depth falls through 3 mm. A thin dotted tail continues a "
-            "run that has come to rest."
-          : "Velocity of the plug. The exact line is the steady state of each stage of the force.";
+  plot.caption = gauge_of(comparison.kind).caption;
   double lowest_end = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const RunView& view = comparison.runs[i];
@@ -111,8 +105,34 @@ Plot gauge_plot(const Comparison& comparison) {
   return plot;
 }
 
+/// What else each run recorded, against time.
+Chapter further_chapter(const Comparison& comparison) {
+  Chapter chapter{"gauges", "What else was gauged", {}};
+  for (const Gauge& gauge : further_gauges(comparison.kind)) {
+    Plot plot{.id = gauge.key, .title = gauge.name + " against time", .caption = gauge.caption};
+    plot.x = time_axis(comparison);
+    plot.y = {gauge.name, gauge.unit, false, true};
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+      const Series series = column(comparison.runs[i].run, gauge.column, gauge.si);
+      if (series.empty()) continue;
+      Curve curve{.entry = static_cast<int>(i)};
+      for (const double t : history_times(series.time.front(), std::min(series.end(), comparison.end))) {
+        curve.x.push_back(t);
+        curve.y.push_back(gauge.shown * series.at(t));
+      }
+      plot.curves.push_back(std::move(curve));
+    }
+    // A height that never leaves zero says nothing.
+    const bool says = std::any_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) {
+      return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return y != 0.0; });
+    });
+    if (says) chapter.blocks.push_back(std::move(plot));
+  }
+  return chapter;
+}
+
 std::optional<Block> profiles(const Comparison& comparison) {
-  const bool slump = is_slump(comparison);
+  const bool slump = !is_duct(comparison);
   report::Frames frames{"profiles", slump ? "depth profiles" : "velocity profiles"};
   frames.caption =
       slump ? "Depth: concrete volume per plan area, for every solver. Vertical scale exaggerated. Drag, use "
@@ -120,7 +140,7 @@ std::optional<Block> profiles(const Comparison& comparison) {
             : "Drag, use the arrow keys, or press play.";
   frames.times = comparison.frames;
   frames.grid = {slump ? (comparison.radial ? "radius" : "distance") : "height above the mid-plane", "mm"};
-  frames.value = {slump ? "depth" : "velocity", unit_of(comparison), false, false, 0.0, std::nullopt};
+  frames.value = {slump ? "depth" : "velocity", slump ? "mm" : "m/s", false, false, 0.0, std::nullopt};
   if (!slump) frames.value.from = std::nullopt;
   for (const double x : comparison.grid) frames.coordinate.push_back(1e3 * x);
   frames.upright = !slump;
@@ -178,7 +198,12 @@ Table::Cell verdict(const RunView& view) {
 
 std::string measures_caption(const Comparison& comparison) {
   const Options& o = comparison.options;
-  if (!is_slump(comparison))
+  if (comparison.kind == scenes::Kind::v_funnel)
+    return "Light is seen once some line of sight through the outlet holds less than 3 mm of material. ± is "
+           "the "
+           "difference to another grid, taken on to zero cell size at first order. A dash: not measured, or "
+           "never.";
+  if (is_duct(comparison))
     return fmt::format(
         "A duct has stopped once its plug stays below {:g} % of its largest velocity. A dash: not measured, "
         "or never.",
@@ -187,19 +212,21 @@ std::string measures_caption(const Comparison& comparison) {
   for (const RunView& view : comparison.runs)
     if (!view.measures.overshoot_reference_run.empty())
       references.insert(view.measures.overshoot_reference_run);
+  const std::string gauge = gauge_name(comparison);
   return fmt::format(
       "A run is at rest by shear rate once the 99th percentile of the shear rate stays below {:g} 1/s, and "
-      "by spread rate "
-      "once the spread grows by less than {:g} mm/s over {:g} s, up to the end of its record. A dash: not "
+      "by {} rate "
+      "once the {} grows by less than {:g} mm/s over {:g} s, up to the end of its record. A dash: not "
       "measured, or "
       "never. These thresholds are customary, not criteria: a fluid that creeps for ever passes them too. "
       "The volume of a "
       "material point run includes its elastic compression. {}",
-      o.rest_shear_rate, 1e3 * o.rest_spread_rate, o.rate_window,
+      o.rest_shear_rate, gauge, gauge, 1e3 * o.rest_spread_rate, o.rate_window,
       references.empty()
-          ? "No run of the elasto-viscoplastic law is among these, so there is no arrested spread to count "
-            "from."
-          : "Arrested spread: that of " + words::listed({references.begin(), references.end()}) + ".");
+          ? fmt::format("No run of the elasto-viscoplastic law is among these, so there is no arrested {} to "
+                        "count from.",
+                        gauge)
+          : "Arrested " + gauge + ": that of " + words::listed({references.begin(), references.end()}) + ".");
 }
 
 Table measures_table(const Comparison& comparison) {
@@ -223,6 +250,24 @@ Table measures_table(const Comparison& comparison) {
                            return at == view.measures.overshoot.end() ? Table::Cell()
                                                                       : Table::Cell(1e3 * at->second);
                          }});
+  } else if (!is_duct(comparison)) {
+    for (const Reading& reading : readings_of(comparison.kind)) {
+      const auto part = [quantity = reading.quantity](std::optional<double> ReadValue::*member) {
+        return [=](const RunView& view) {
+          const auto found = view.measures.readings.find(quantity);
+          return found == view.measures.readings.end() ? Table::Cell() : cell(found->second.*member);
+        };
+      };
+      const Format format = reading.unit == "mm" ? fixed(0) : reading.unit == "s" ? fixed(2) : significant(3);
+      columns.push_back({{capitalised(reading.name), reading.unit, format}, part(&ReadValue::value)});
+      columns.push_back(
+          {{"± of " + reading.name, reading.unit, reading.unit == "mm" ? fixed(0) : significant(2)},
+           part(&ReadValue::uncertainty)});
+    }
+    columns.push_back({{"Recorded until", "s", fixed(1)}, [](const RunView& view) {
+                         return view.exact ? Table::Cell() : cell(view.measures.end);
+                       }});
+    columns.push_back(measure_column("Rest by shear rate", "s", fixed(1), &Measures::rest_by_shear_rate));
   } else {
     columns = {
         measure_column("Plug velocity at the end", "m/s", significant(4), &Measures::gauge_end),
@@ -290,7 +335,7 @@ std::optional<Chapter> square_chapter(const Comparison& comparison) {
     curve.colour = colour == 0 ? -1 : colour - 1;
     curve.dash = colour++;
     plot.curves.push_back(std::move(curve));
-    table.columns.push_back({name, unit, is_slump(comparison) ? signed_fixed(0) : significant(3)});
+    table.columns.push_back({name, unit, is_duct(comparison) ? significant(3) : signed_fixed(0)});
   }
   for (const double time : comparison.times) {
     const auto at = std::lower_bound(square.at.begin(), square.at.end(), time - 1e-9,
@@ -330,10 +375,15 @@ std::optional<Chapter> shear_chapter(const Comparison& comparison) {
 }
 
 std::string residual_caption(const Comparison& comparison) {
-  if (!is_slump(comparison))
+  if (is_duct(comparison))
     return "Predicted: the steady velocity of the regularised law under the last force, from its flow curve.";
+  if (!is_slump(comparison))
+    return fmt::format(
+        "Measured: the median slope of the {} over the last {:g} s (of a short record, its last fifth).",
+        gauge_name(comparison), comparison.options.residual_window);
   return fmt::format(
-      "Measured: the median slope of the spread over the last {:g} s. Predicted: on the arrested profile, "
+      "Measured: the median slope of the spread over the last {:g} s (of a short record, its last fifth). "
+      "Predicted: on the arrested profile, "
       "whose base carries "
       "the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays "
       "similar then grows in "
@@ -344,12 +394,13 @@ std::string residual_caption(const Comparison& comparison) {
 }
 
 std::optional<Chapter> residual_chapter(const Comparison& comparison) {
-  const double scale = scale_of(comparison);
+  const double scale = is_duct(comparison) ? 1.0 : 1e3;
   const std::string unit = speed_unit(comparison);
   const auto moving = [](const RunView& view) { return !view.exact && view.measures.residual.has_value(); };
   Bars bars{"residual",
-            is_slump(comparison) ? "growth of the spread over the last seconds"
-                                 : "plug velocity over the last seconds",
+            is_duct(comparison)
+                ? "plug velocity over the last seconds"
+                : fmt::format("growth of the {} over the last seconds", gauge_name(comparison)),
             residual_caption(comparison),
             {"speed", unit, true},
             {},
@@ -359,7 +410,7 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
     const Measures& m = view.measures;
     bars.categories.push_back(view.label + (view.noisy ? " (noisy)" : "") +
                               (view.trouble.empty() ? "" : " (incomplete)"));
-    const double floor = is_slump(comparison) ? 1e-5 : 1e-8;
+    const double floor = is_duct(comparison) ? 1e-8 : 1e-5;
     bars.groups[0].values.push_back(std::max(std::abs(*m.residual) * scale, floor));
     bars.groups[1].values.push_back(m.predicted_creep && *m.predicted_creep > 0.0 ? scale * *m.predicted_creep
                                                                                   : none);
@@ -386,24 +437,28 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
 
 /// What the gauge is counted from where a run is cut: the arrested spread of a slump.
 double stop_base(const Comparison& comparison, const RunView& view) {
-  if (!is_slump(comparison)) return 0.0;
+  if (!grows_to_rest(comparison.kind)) return 0.0;
   return view.measures.overshoot_reference.value_or(view.measures.gauge_end.value_or(0.0));
 }
 
 std::optional<Chapter> stops_chapter(const Comparison& comparison) {
   if (comparison.stops.size() < 2) return std::nullopt;
-  const bool slump = is_slump(comparison);
+  const bool slump = !is_duct(comparison);
+  const std::string gauge = gauge_name(comparison);
   const double scale = scale_of(comparison);
   Plot plot{"stops",
-            slump ? "what is read if the run is cut at a time" : "plug velocity if the run is cut at a time",
-            slump ? "Counted from the arrested spread of the elasto-viscoplastic run of the same solver "
-                    "where there is one, "
-                    "else of any solver, else from the run's own end. A level line needs no choice of when "
-                    "to stop; the "
-                    "slope of any other is the error that choice makes."
-                  : "A run that has come to rest needs no choice of when to stop.",
+            slump ? gauge + " that is read if the run is cut at a time"
+                  : "plug velocity if the run is cut at a time",
+            slump
+                ? "Counted from the arrested " + gauge +
+                      " of the elasto-viscoplastic run of the same solver "
+                      "where there is one, "
+                      "else of any solver, else from the run's own end. A level line needs no choice of when "
+                      "to stop; the "
+                      "slope of any other is the error that choice makes."
+                : "A run that has come to rest needs no choice of when to stop.",
             {"time of the stop", "s", false, false, comparison.stops.front(), comparison.stops.back()},
-            {slump ? "spread less the arrested one" : "plug velocity", unit_of(comparison)},
+            {slump ? gauge + " less the arrested one" : "plug velocity", unit_of(comparison)},
             {}};
   const auto measured = [](const RunView& view) {
     return !view.exact && view.measures.stop_lowest.has_value();
@@ -431,7 +486,7 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
        [=](const RunView& view) { return Table::Cell(scale * range(view)); }}};
   if (slump)
     columns.push_back(
-        {{"Range of the arrested spread", "%", fixed(1)}, [&comparison, range](const RunView& view) {
+        {{"Range of the arrested " + gauge, "%", fixed(1)}, [&comparison, range](const RunView& view) {
            return Table::Cell(100.0 * range(view) / stop_base(comparison, view));
          }});
   return Chapter{"arbitrary-stops",
@@ -446,25 +501,29 @@ std::string difference_word(const std::string& kind) {
 
 std::optional<Chapter> pairs_chapter(const Comparison& comparison) {
   if (comparison.pairs.empty()) return std::nullopt;
-  const bool slump = is_slump(comparison);
+  const bool slump = !is_duct(comparison);
   const double scale = scale_of(comparison);
-  const std::string unit = unit_of(comparison);
+  const double depth = slump ? 1e3 : 1.0;
+  const std::string unit = slump ? "mm" : "m/s";
   Table table{
       "pairs", "differences between profiles",
       std::string(
-          slump ? "Norms of the difference in depth on a common radius grid, weighted by plan area over all "
-                  "that either run covers"
-                : "Norms of the difference in velocity on a common grid") +
+          comparison.radial
+              ? "Norms of the difference in depth on a common radius grid, weighted by plan area over all "
+                "that either run covers"
+          : slump ? "Norms of the difference in depth on a common grid, over all that either run covers"
+                  : "Norms of the difference in velocity on a common grid") +
           ": L1 the mean, L2 the root of the mean square, L∞ the largest."};
-  table.columns = {{"Run", "", {}, true},
-                   {"against", "", {}, true},
-                   {"Differs in", "", {}, true},
-                   {slump ? "Spread" : "Plug velocity", unit, slump ? signed_fixed(0) : significant(3)},
-                   {"L1", unit, slump ? fixed(2) : significant(3)},
-                   {"L2", unit, slump ? fixed(2) : significant(3)},
-                   {"L∞", unit, slump ? fixed(1) : significant(3)},
-                   {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
-                   {"L2, relative", "%", significant(2)}};
+  table.columns = {
+      {"Run", "", {}, true},
+      {"against", "", {}, true},
+      {"Differs in", "", {}, true},
+      {capitalised(gauge_name(comparison)), unit_of(comparison), slump ? signed_fixed(0) : significant(3)},
+      {"L1", unit, slump ? fixed(2) : significant(3)},
+      {"L2", unit, slump ? fixed(2) : significant(3)},
+      {"L∞", unit, slump ? fixed(1) : significant(3)},
+      {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
+      {"L2, relative", "%", significant(2)}};
   table.choice = "Time";
   std::map<double, std::vector<Table::Row>> by_time;
   for (const Pair& pair : comparison.pairs)
@@ -472,8 +531,8 @@ std::optional<Chapter> pairs_chapter(const Comparison& comparison) {
       const auto& e = at.error;
       by_time[at.time].push_back(
           {{comparison.runs[pair.run].label, comparison.runs[pair.reference].label,
-            difference_word(pair.kind), cell(at.gauge_difference, scale), scale * e.l1, scale * e.l2,
-            scale * e.linf, 100.0 * e.l1_relative, 100.0 * e.l2_relative},
+            difference_word(pair.kind), cell(at.gauge_difference, scale), depth * e.l1, depth * e.l2,
+            depth * e.linf, 100.0 * e.l1_relative, 100.0 * e.l2_relative},
            static_cast<int>(pair.run),
            "",
            fmt::format("{:.4g} s", at.time)});
@@ -572,8 +631,11 @@ std::vector<Block> words_of(const Comparison& comparison) {
     blocks.push_back(Text{
         "The scene names runs that are not among these: " + words::listed(comparison.missing, "; ") + ".",
         Text::Style::warning});
+  const char* stop = comparison.kind == scenes::Kind::v_funnel ? "When is light seen, and does it run empty?"
+                     : comparison.kind == scenes::Kind::dam_break ? "How far does each run, and when?"
+                                                                  : "When does each stop, and where?";
   const std::pair<Finding::Topic, const char*> questions[] = {
-      {Finding::Topic::stop, "When does each stop, and where?"},
+      {Finding::Topic::stop, stop},
       {Finding::Topic::apart, "How far apart are they?"},
       {Finding::Topic::cause, "Which difference is physics, which numerics?"},
       {Finding::Topic::cost, "What did it cost?"}};
@@ -583,6 +645,19 @@ std::vector<Block> words_of(const Comparison& comparison) {
 }
 
 }  // namespace
+
+report::Entry entry_of(const std::string& name, const std::string& solver, const std::string& model) {
+  report::Entry entry{name};
+  const bool exact = solver == "exact";
+  entry.colour = exact                            ? -1
+                 : model == "elasto-viscoplastic" ? 0
+                 : model == "papanastasiou"       ? 1
+                 : model == "bi-viscous"          ? 2
+                 : model == "newtonian"           ? 3
+                                                  : 4;
+  entry.dash = exact ? 5 : solver == "mpm" ? 0 : solver == "foam" ? 1 : 2;
+  return entry;
+}
 
 report::Page page_of(const Comparison& comparison, const Json& json) {
   report::Page page{"comparison",
@@ -598,8 +673,9 @@ report::Page page_of(const Comparison& comparison, const Json& json) {
   };
   Chapter shapes{"shapes", "Shapes"};
   if (auto depths = profiles(comparison)) shapes.blocks.push_back(std::move(*depths));
-  if (auto section = fields::section_of(comparison)) shapes.blocks.push_back(std::move(*section));
+  for (auto& section : fields::sections_of(comparison)) shapes.blocks.push_back(std::move(section));
   if (!shapes.blocks.empty()) add(std::move(shapes));
+  if (Chapter further = further_chapter(comparison); !further.blocks.empty()) add(std::move(further));
   add(square_chapter(comparison));
   add(shear_chapter(comparison));
   add(residual_chapter(comparison));

@@ -8,4 +8,8 @@ namespace flowrest::compare {
 /// The comparison as a page. `json`: what to_json says of it.
 report::Page page_of(const Comparison&, const nlohmann::ordered_json& json);
 
+/// How runs of a solver and a law are drawn on every page: colour tells the law and dashes tell the solver,
+/// so that a figure shows by itself which difference is which. Exact solutions are drawn in ink.
+report::Entry entry_of(const std::string& name, const std::string& solver, const std::string& model);
+
 }  // namespace flowrest::compare

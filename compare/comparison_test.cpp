@@ -435,3 +435,52 @@ TEST(Words, CarryNoMoreDigitsThanTheyShould) {
   EXPECT_EQ(words::listed({"a", "b", "c"}), "a, b and c");
   EXPECT_EQ(words::listed({"a", "b"}, "; "), "a; b");
 }
+
+TEST_F(ComparisonTest, AnLBoxIsToldInItsOwnWords) {
+  synthetic::Box stiff;
+  stiff.status = runs::Status::at_rest;
+  synthetic::write(stiff, folder / "evp");
+  synthetic::Box fluid;
+  fluid.model = Model::papanastasiou;
+  fluid.front = 0.7;
+  fluid.walls_differ = "the bars are square";
+  synthetic::write(fluid, folder / "fluid");
+  const Comparison comparison = compared();
+  EXPECT_THAT(comparison.findings.front().text,
+              HasSubstr("MPM elasto-viscoplastic comes to rest after 10 s with a front of 520 ± 10 mm"));
+  // 0.7 (1 - exp(-t)) = 0.6 at ln 7; between rows of 0.05 s.
+  const auto& arrival = run(comparison, "MPM papanastasiou").measures.readings.at("arrival_s");
+  ASSERT_TRUE(arrival.value);
+  EXPECT_NEAR(*arrival.value, std::log(7.0), 0.05);
+  EXPECT_FALSE(arrival.uncertainty) << "there is one grid only";
+  EXPECT_FALSE(run(comparison, "MPM elasto-viscoplastic").measures.readings.at("arrival_s").value);
+  const std::string told = text(comparison);
+  EXPECT_THAT(told,
+              HasSubstr("MPM papanastasiou reaches the end wall after 1.9 s and stands 40.0 mm high there"));
+  EXPECT_THAT(told, HasSubstr("from 4.40 to 2.40 at 2.0 s, up again to 2.56 by 10 s"));
+  EXPECT_THAT(told, Not(HasSubstr("spread")));
+  EXPECT_THAT(comparison.notes,
+              testing::Contains("Walls of MPM papanastasiou differ from the scene's: the bars are square."));
+  write_comparison(comparison, folder / "report");
+  EXPECT_TRUE(fs::exists(folder / "report" / "front.csv"));
+  std::ifstream csv(folder / "report" / "measures.csv");
+  std::string header;
+  std::getline(csv, header);
+  EXPECT_THAT(header,
+              testing::AllOf(HasSubstr(",arrival_s,arrival_s_uncertainty,"), Not(HasSubstr("spread"))));
+}
+
+TEST_F(ComparisonTest, AFunnelsGridsSayHowWellItsLightIsKnown) {
+  synthetic::Funnel fine, coarse;
+  fine.set = {"mpm.cell=0.01"};
+  coarse.set = {"mpm.cell=0.02"};
+  coarse.empty = 2.5;
+  synthetic::write(fine, folder / "fine");
+  synthetic::write(coarse, folder / "coarse");
+  const Comparison comparison = compared();
+  const auto& light = run(comparison, "MPM elasto-viscoplastic, 10 mm cells").measures.readings.at("light_s");
+  EXPECT_NEAR(*light.value, 2.0 * (1.0 - 3.0 / 600.0), 1e-9);
+  EXPECT_NEAR(*light.uncertainty, 0.5 * (1.0 - 3.0 / 600.0), 1e-9);
+  EXPECT_THAT(comparison.findings.front().text,
+              HasSubstr("and after 2.0 ± 0.5 s (MPM elasto-viscoplastic, 10 mm cells)"));
+}

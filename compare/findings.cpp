@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "compare/comparison.h"
+#include "compare/measures/gauges.h"
 #include "compare/measures/run_measures.h"
+#include "compare/run_view.h"
 #include "compare/words.h"
 
 namespace flowrest::compare {
@@ -18,8 +20,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-std::string spread_of(const RunView& view) {
-  return words::spread(*view.measures.gauge_end, view.measures.uncertainty);
+std::string end_of(const Comparison& comparison, const RunView& view) {
+  return words::of(gauge_of(comparison.kind), *view.measures.gauge_end, view.measures.uncertainty);
 }
 
 /// What is known of the difference between two runs; a run without an uncertainty adds none.
@@ -28,54 +30,57 @@ double uncertainty_of(const RunView& run, const RunView& reference) {
 }
 
 /// "62 ± 14 mm wider", or that the two cannot be told apart.
-std::string difference_of_spread(double metres, double uncertainty) {
-  if (std::abs(metres) <= uncertainty)
-    return fmt::format("level within {}", words::spread(uncertainty, std::nullopt));
-  return fmt::format("{} {}", words::spread(std::abs(metres), uncertainty),
-                     metres > 0.0 ? "wider" : "narrower");
+std::string difference_in(const Gauge& gauge, double value, double uncertainty) {
+  const bool known = gauge.unit == "mm" || uncertainty > 0.0;
+  if (known && std::abs(value) <= uncertainty)
+    return fmt::format("level within {}", words::of(gauge, uncertainty));
+  return fmt::format("{} {}", words::of(gauge, std::abs(value), uncertainty),
+                     value > 0.0 ? gauge.more : gauge.less);
 }
 
 std::string noise_clause(const RunView& view) {
   return view.noisy ? fmt::format("; noisy: {}", view.noise) : "";
 }
 
-/// What an elasto-viscoplastic slump came to.
-std::string arrest_sentence(const RunView& view) {
+/// What an elasto-viscoplastic body came to.
+std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
+  const std::string& gauge = gauge_of(comparison.kind).name;
   const Measures& m = view.measures;
   const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
   const std::string more = m.growth_to_come ? fmt::format(", with at most {:.0f} mm still to come",
-                                                          std::ceil(1e3 * *m.growth_to_come))
+                                                          std::max(1.0, std::ceil(1e3 * *m.growth_to_come)))
                                             : "";
   if (view.held)
-    return fmt::format("{} comes to rest{} with a spread of {}{}{}.", view.label,
-                       m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "",
-                       spread_of(view), more, noise);
+    return fmt::format("{} comes to rest{} with a {} of {}{}{}.", view.label,
+                       m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "", gauge,
+                       end_of(comparison, view), more, noise);
   const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
   if (m.cause == Cause::at_rest && rest)
-    return fmt::format("{} has all but stopped by {} and ends with a spread of {}{}.", view.label,
-                       words::time(*rest), spread_of(view), noise);
-  return fmt::format("{} has not come to rest by {}: its spread is {}{}{}.", view.label, words::time(*m.end),
-                     spread_of(view),
+    return fmt::format("{} has all but stopped by {} and ends with a {} of {}{}.", view.label,
+                       words::time(*rest), gauge, end_of(comparison, view), noise);
+  return fmt::format("{} has not come to rest by {}: its {} is {}{}{}.", view.label, words::time(*m.end),
+                     gauge, end_of(comparison, view),
                      m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", noise);
 }
 
 /// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
-std::string fluid_clause(const RunView& view) {
+std::string fluid_clause(const Comparison& comparison, const RunView& view) {
+  const Gauge& gauge = gauge_of(comparison.kind);
   const Measures& m = view.measures;
   std::string inner;
   const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : ", ") + part; };
   if (m.overshoot_reference) {
     const double over = *m.gauge_end - *m.overshoot_reference;
     add(std::abs(over) <= m.uncertainty.value_or(5e-4)
-            ? std::string("level with the arrested spread")
-            : fmt::format("{} {} the arrested spread", words::spread(std::abs(over), m.uncertainty),
-                          over > 0.0 ? "past" : "short of"));
+            ? fmt::format("level with the arrested {}", gauge.name)
+            : fmt::format("{} {} the arrested {}", words::of(gauge, std::abs(over), m.uncertainty),
+                          over > 0.0 ? "past" : "short of", gauge.name));
   }
   if (m.residual)
     add(fmt::format("{} by {}", *m.residual >= 0.0 ? "growing" : "shrinking",
                     words::speed(std::abs(*m.residual))));
-  return fmt::format("{} stands at {}{}{}{}", view.label, spread_of(view), inner.empty() ? "" : " (", inner,
-                     inner.empty() ? "" : noise_clause(view) + ")");
+  return fmt::format("{} stands at {}{}{}{}", view.label, end_of(comparison, view), inner.empty() ? "" : " (",
+                     inner, inner.empty() ? "" : noise_clause(view) + ")");
 }
 
 /// The fluids, those that end together in one sentence.
@@ -83,13 +88,14 @@ std::vector<std::string> fluid_sentences(const Comparison& comparison) {
   std::map<double, std::vector<std::string>> by_end;
   for (const RunView& view : comparison.runs)
     if (view.fluid && !view.gauge.empty())
-      by_end[std::round(2.0 * *view.measures.end) / 2.0].push_back(fluid_clause(view));
+      by_end[std::round(2.0 * *view.measures.end) / 2.0].push_back(fluid_clause(comparison, view));
+  const bool newtonian = std::any_of(comparison.runs.begin(), comparison.runs.end(),
+                                     [](const RunView& view) { return view.model == "newtonian"; });
   std::vector<std::string> sentences;
   for (const auto& [end, clauses] : by_end)
-    sentences.push_back(
-        fmt::format("{} not come to rest by {}: {}.",
-                    clauses.size() == 1 ? "The regularised fluid has" : "The regularised fluids have",
-                    words::time(end), listed(clauses)));
+    sentences.push_back(fmt::format("The {}{} not come to rest by {}: {}.", newtonian ? "" : "regularised ",
+                                    clauses.size() == 1 ? "fluid has" : "fluids have", words::time(end),
+                                    listed(clauses)));
   return sentences;
 }
 
@@ -104,7 +110,7 @@ const Pair::At* last_gauged(const Pair& pair) {
 std::string cause_sentence(const Comparison& comparison) {
   std::vector<std::string> creep, either, noise, unexplained;
   const auto speed = [&](double value) {
-    return comparison.kind == scenes::Kind::slump ? words::speed(value) : words::velocity(value);
+    return grows_to_rest(comparison.kind) ? words::speed(value) : words::velocity(value);
   };
   for (const RunView& view : comparison.runs) {
     const Measures& m = view.measures;
@@ -137,10 +143,11 @@ std::string split_sentence(const Comparison& comparison) {
     const RunView &run = comparison.runs[pair.run], &reference = comparison.runs[pair.reference];
     // Two fluids differ by their regularisation only; the law is read off against the material that stops.
     if (pair.kind == "law" && reference.fluid) continue;
-    const std::string what = comparison.kind == scenes::Kind::slump
-                                 ? difference_of_spread(*at->gauge_difference, uncertainty_of(run, reference))
-                                 : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
-                                               *at->gauge_difference >= 0.0 ? "faster" : "slower");
+    const std::string what =
+        comparison.kind != scenes::Kind::duct
+            ? difference_in(gauge_of(comparison.kind), *at->gauge_difference, uncertainty_of(run, reference))
+            : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
+                          *at->gauge_difference >= 0.0 ? "faster" : "slower");
     (pair.kind == "law" ? law : solver)
         .push_back(fmt::format("{} ends {} {} {}", run.label, what,
                                what.starts_with("level") ? "with" : "than", reference.label));
@@ -188,10 +195,11 @@ std::string square_sentence(const Comparison& comparison) {
                        square.missing.size() == 1 ? "a run" : "runs", listed(square.missing));
   }
   const Square::At& at = square.at.back();
-  const bool slump = comparison.kind == scenes::Kind::slump;
+  const Gauge& gauge = gauge_of(comparison.kind);
   const auto amount = [&](double value) {
-    return slump ? fmt::format("{}{:.0f} mm", value < 0.0 ? "−" : "", std::abs(1e3 * value))
-                 : words::velocity(value);
+    return comparison.kind == scenes::Kind::duct ? words::velocity(value)
+                                                 : fmt::format("{}{:.0f} {}", value < 0.0 ? "−" : "",
+                                                               std::abs(gauge.shown * value), gauge.unit);
   };
   return fmt::format(
       "Of the {} between {} and {} at {}, the law makes {} and the discretisation {}; {} more can be given "
@@ -210,9 +218,34 @@ std::string range_sentence(const Comparison& comparison) {
     if (!least || *view.measures.gauge_end < *least->measures.gauge_end) least = &view;
     if (!most || *view.measures.gauge_end > *most->measures.gauge_end) most = &view;
   }
-  if (!least || least == most || comparison.kind != scenes::Kind::slump) return "";
-  return fmt::format("The spreads end between {} ({}) and {} ({}).", spread_of(*least), least->label,
-                     spread_of(*most), most->label);
+  if (!least || least == most || !grows_to_rest(comparison.kind)) return "";
+  return fmt::format("The {}s end between {} ({}) and {} ({}).", gauge_of(comparison.kind).name,
+                     end_of(comparison, *least), least->label, end_of(comparison, *most), most->label);
+}
+
+/// A reading of a run in words; nothing where it has none.
+std::optional<std::string> reading_of(const RunView& view, const std::string& quantity) {
+  const auto found = view.measures.readings.find(quantity);
+  if (found == view.measures.readings.end() || !found->second.value) return std::nullopt;
+  return words::reading(*found->second.value, found->second.uncertainty, reading_named(quantity).unit);
+}
+
+/// When an event takes place in every run: "light is seen through the funnel after 1.4 s (MPM ...)".
+std::string event_clause(const Comparison& comparison, const std::string& quantity,
+                         const std::string& happens, const std::string& never) {
+  std::vector<std::string> seen, dark;
+  for (const RunView& view : comparison.runs) {
+    if (view.exact) continue;
+    if (const auto light = reading_of(view, quantity))
+      seen.push_back(fmt::format("after {} ({})", *light, view.label));
+    else if (view.trouble.empty())
+      dark.push_back(view.label);
+  }
+  std::string text = seen.empty() ? "" : happens + " " + listed(seen);
+  if (!dark.empty())
+    text += fmt::format("{}{} {} by {}", text.empty() ? "" : "; ", listed(dark), never,
+                        words::time(comparison.end));
+  return text;
 }
 
 /// The headline: what comes to rest and what does not, with every warning.
@@ -235,14 +268,25 @@ std::string opening_sentence(const Comparison& comparison) {
     all_fluids = all_fluids && view.fluid;
   }
   std::string text;
-  if (arrested && comparison.kind == scenes::Kind::slump) {
+  if (arrested && grows_to_rest(comparison.kind)) {
     const Measures& m = arrested->measures;
     const auto rest = m.rest_declared        ? m.rest_declared
                       : m.rest_by_shear_rate ? m.rest_by_shear_rate
                                              : m.rest_by_spread_rate;
-    text = fmt::format("{} comes to rest{} with a spread of {}", arrested->label,
-                       rest ? " after " + words::time(*rest) : "", spread_of(*arrested));
-  } else if (arrested) {
+    const auto arrival = reading_of(*arrested, "arrival_s");
+    text = fmt::format("{}{} comes to rest{}", arrested->label,
+                       arrival ? fmt::format(" reaches the end wall after {} and", *arrival) : "",
+                       rest ? " after " + words::time(*rest) : "");
+    const auto height = reading_of(*arrested, "end_height_mm");
+    text += arrival && height ? fmt::format(", {} high at the wall", *height)
+                              : fmt::format(" with a {} of {}", gauge_of(comparison.kind).name,
+                                            end_of(comparison, *arrested));
+  } else if (comparison.kind == scenes::Kind::v_funnel) {
+    text = event_clause(comparison, "light_s", "light is seen through the funnel", "shows no light");
+  } else if (comparison.kind == scenes::Kind::dam_break) {
+    text = event_clause(comparison, "arrival_s", "the front reaches the end wall",
+                        "has not reached the end wall");
+  } else if (arrested && arrested->measures.stop_after_step) {
     text = fmt::format("{} stops {} after the last change of force", arrested->label,
                        words::time(*arrested->measures.stop_after_step));
   }
@@ -250,7 +294,9 @@ std::string opening_sentence(const Comparison& comparison) {
   const std::string who = moving.size() > 2 && all_fluids
                               ? fmt::format("the {} regularised fluids", moving.size())
                               : listed(moving);
-  if (!moving.empty())
+  // A funnel runs empty and water never rests: that they move says nothing.
+  if (!moving.empty() && comparison.kind != scenes::Kind::v_funnel &&
+      comparison.kind != scenes::Kind::dam_break)
     add(fmt::format("{} {} still moving at {}", who, moving.size() == 1 ? "is" : "are",
                     words::time(comparison.end)));
   if (!noisy.empty()) add(fmt::format("noisy: {}", listed(noisy)));
@@ -286,20 +332,107 @@ void tell(Comparison& comparison, Topic topic, std::string text) {
   if (!text.empty()) comparison.findings.push_back({topic, capitalised(std::move(text))});
 }
 
-void describe_slump(Comparison& comparison) {
+/// What a run's front met in a box or a tank, and what runs out of a funnel.
+std::string readings_sentence(const Comparison& comparison, const RunView& view) {
+  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  if (comparison.kind == scenes::Kind::v_funnel) {
+    const auto light = reading_of(view, "light_s");
+    const auto rest = reading_of(view, "rest_s");
+    std::string text = light ? fmt::format("{}: light is seen after {}", view.label, *light)
+                             : fmt::format("{}: no light is seen", view.label);
+    if (!view.gauge.empty())
+      text += fmt::format("; {:.0f} % of the mass has run out by {}", 100.0 * view.gauge.value.back(),
+                          words::time(view.gauge.end()));
+    if (rest) text += fmt::format("; at rest after {}", *rest);
+    return text + noise + ".";
+  }
+  const auto arrival = reading_of(view, "arrival_s"), height = reading_of(view, "end_height_mm");
+  if (arrival)
+    return fmt::format("{} reaches the end wall after {}{}{}.", view.label, *arrival,
+                       height && comparison.kind == scenes::Kind::l_box
+                           ? fmt::format(" and stands {} high there at the end", *height)
+                           : "",
+                       noise);
+  return "";
+}
+
+/// How lambda goes: down while it flows, up again at rest.
+std::string flocculation_sentence(const Comparison& comparison) {
+  std::vector<std::string> parts;
+  for (const RunView& view : comparison.runs) {
+    const Series lambda = column(view.run, "flocculation_mean");
+    if (lambda.empty() || lambda.value.front() == 0.0) continue;
+    const auto least = std::min_element(lambda.value.begin(), lambda.value.end());
+    const double at = lambda.time[static_cast<std::size_t>(least - lambda.value.begin())];
+    const bool recovers = lambda.value.back() > *least + 1e-3 * lambda.value.front();
+    parts.push_back(fmt::format(
+        "from {:.2f} to {:.2f} at {}{} in {}", lambda.value.front(), *least, words::time(at),
+        recovers ? fmt::format(", up again to {:.2f} by {}", lambda.value.back(), words::time(lambda.end()))
+                 : "",
+        view.label));
+  }
+  return parts.empty() ? "" : fmt::format("The mean flocculation state λ falls {}.", listed(parts, "; "));
+}
+
+/// How far apart an event is between two laws in one solver, and between two solvers of one law.
+std::string events_apart(const Comparison& comparison, const std::string& quantity,
+                         const std::string& event) {
+  std::vector<std::string> law, solver;
+  for (const Pair& pair : comparison.pairs) {
+    if (pair.kind != "law" && pair.kind != "solver") continue;
+    const RunView &run = comparison.runs[pair.run], &reference = comparison.runs[pair.reference];
+    const auto own = run.measures.readings.find(quantity), other = reference.measures.readings.find(quantity);
+    if (own == run.measures.readings.end() || other == reference.measures.readings.end() ||
+        !own->second.value || !other->second.value)
+      continue;
+    const double difference = *own->second.value - *other->second.value;
+    const double known =
+        std::hypot(own->second.uncertainty.value_or(0.0), other->second.uncertainty.value_or(0.0));
+    (pair.kind == "law" ? law : solver)
+        .push_back(
+            std::abs(difference) <= std::max(known, 0.005)
+                ? fmt::format("{} {} as early in {} as in {}", event,
+                              known > 0.0 ? fmt::format("within {:.2g} s", known) : std::string("about"),
+                              run.label, reference.label)
+                : fmt::format("{} {} {} in {} than in {}", event,
+                              words::reading(std::abs(difference), known, "s"),
+                              difference > 0.0 ? "later" : "earlier", run.label, reference.label));
+  }
+  std::string text;
+  if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
+  if (!solver.empty())
+    text += fmt::format("{}Changing only the solver: {}.", text.empty() ? "" : " ", listed(solver));
+  return text;
+}
+
+void describe_funnel(Comparison& comparison) {
+  for (const RunView& view : comparison.runs)
+    if (!view.exact && !view.gauge.empty())
+      tell(comparison, Topic::stop, readings_sentence(comparison, view));
+  tell(comparison, Topic::apart, events_apart(comparison, "light_s", "light is seen"));
+  tell(comparison, Topic::context, flocculation_sentence(comparison));
+}
+
+/// A slump, or what runs along a box or a tank.
+void describe_growth(Comparison& comparison) {
   std::vector<std::string> exact;
   for (const RunView& view : comparison.runs) {
     if (view.gauge.empty()) continue;
     if (view.exact)
       exact.push_back(fmt::format("{} ({})", words::spread(*view.measures.gauge_end), view.label));
-    if (!view.exact && !view.fluid) tell(comparison, Topic::stop, arrest_sentence(view));
+    if (view.exact) continue;
+    if (comparison.kind != scenes::Kind::slump)
+      tell(comparison, Topic::stop, readings_sentence(comparison, view));
+    if (!view.fluid) tell(comparison, Topic::stop, arrest_sentence(comparison, view));
   }
-  for (std::string& sentence : fluid_sentences(comparison))
-    tell(comparison, Topic::stop, std::move(sentence));
+  if (comparison.kind != scenes::Kind::dam_break)
+    for (std::string& sentence : fluid_sentences(comparison))
+      tell(comparison, Topic::stop, std::move(sentence));
   tell(comparison, Topic::apart, range_sentence(comparison));
   tell(comparison, Topic::apart, split_sentence(comparison));
   tell(comparison, Topic::cause, square_sentence(comparison));
   tell(comparison, Topic::cause, cause_sentence(comparison));
+  tell(comparison, Topic::context, flocculation_sentence(comparison));
   tell(comparison, Topic::context, edge_sentence(comparison));
   tell(comparison, Topic::context, uncertainty_sentence(comparison));
   if (!exact.empty())
@@ -345,7 +478,19 @@ void describe_duct(Comparison& comparison) {
   tell(comparison, Topic::cause, cause_sentence(comparison));
 }
 
+/// Which comparison is fair where nothing exact is known.
+constexpr const char* fair_runs =
+    "No exact solution is among these. The same law in two solvers shows the discretisation, two laws in the "
+    "same "
+    "solver show the law, two grids of the same run show what the numbers are good to. Held against a "
+    "measured number "
+    "(`flowrest validate`) a run must first be known better than the difference.";
+
 std::string fair_slump(const Comparison& comparison) {
+  if (std::none_of(comparison.runs.begin(), comparison.runs.end(),
+                   [](const RunView& v) { return v.exact; }) &&
+      number(comparison.runs.front().run.info, "/settings/geometry/mould_lift_velocity"))
+    return fair_runs;
   std::string text =
       "The exact profiles are quasi-static: they are the shapes at which gravity is just held by the yield "
       "stress, reached "
@@ -380,8 +525,14 @@ void describe(Comparison& comparison) {
   tell(comparison, Topic::opening, opening_sentence(comparison));
   tell(comparison, Topic::stop, trouble_sentences(comparison));
   if (comparison.kind == scenes::Kind::slump) {
-    describe_slump(comparison);
+    describe_growth(comparison);
     comparison.fair = fair_slump(comparison);
+  } else if (comparison.kind != scenes::Kind::duct) {
+    if (comparison.kind == scenes::Kind::v_funnel)
+      describe_funnel(comparison);
+    else
+      describe_growth(comparison);
+    comparison.fair = fair_runs;
   } else {
     describe_duct(comparison);
     comparison.fair =

@@ -7,6 +7,7 @@
 #include "compare/comparison.h"
 #include "compare/comparison_page.h"
 #include "compare/fields/section.h"
+#include "compare/measures/gauges.h"
 #include "compare/report/figures.h"
 
 namespace flowrest::compare {
@@ -42,6 +43,16 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
     json["predicted_creep_mm_s"] = scaled(m.predicted_creep, 1e3);
     json["arbitrary_stop_lowest_mm"] = scaled(m.stop_lowest, 1e3);
     json["arbitrary_stop_highest_mm"] = scaled(m.stop_highest, 1e3);
+  } else if (kind != scenes::Kind::duct) {
+    for (const Reading& reading : readings_of(kind)) {
+      const auto found = m.readings.find(reading.quantity);
+      if (found == m.readings.end()) continue;
+      json[reading.quantity] = scaled(found->second.value);
+      json[reading.quantity + "_uncertainty"] = scaled(found->second.uncertainty);
+    }
+    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
+    json["residual_mm_s"] = scaled(m.residual, 1e3);
+    json["overshoot_reference_run"] = m.overshoot_reference_run;
   } else {
     json["plug_velocity_end_m_s"] = scaled(m.gauge_end);
     json["stop_after_step_s"] = scaled(m.stop_after_step);
@@ -66,9 +77,8 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
 Json square_json(const Comparison& comparison) {
   if (!comparison.square) return nullptr;
   const Square& square = *comparison.square;
-  const bool slump = comparison.kind == scenes::Kind::slump;
-  const double scale = slump ? 1e3 : 1.0;
-  const std::string unit = slump ? "_mm" : "_m_s";
+  const double scale = gauge_of(comparison.kind).shown;
+  const std::string unit = gauge_of(comparison.kind).suffix();
   const auto label = [&](const std::optional<std::size_t>& run) {
     return run ? Json(comparison.runs[*run].label) : Json();
   };
@@ -115,16 +125,15 @@ std::string header(const Comparison& comparison, const std::string& first) {
   return line + '\n';
 }
 
-/// One column a run: spread in mm, or velocity in m/s, at the common times.
+/// One column a run: its gauge at the common times, in the unit of its figure.
 std::string gauge_csv(const Comparison& comparison) {
-  const bool slump = comparison.kind == scenes::Kind::slump;
   std::string text = header(comparison, "time_s");
   const double step = round_step(comparison.end / 1200.0);
   for (int i = 0; i * step <= comparison.end * (1.0 + 1e-9); ++i) {
     text += fmt::format("{:.17g}", i * step);
     for (const RunView& view : comparison.runs) {
       auto value = view.gauge_at(i * step);
-      if (value && slump) *value *= 1e3;
+      if (value) *value *= gauge_of(comparison.kind).shown;
       text += ',' + cell(value);
     }
     text += '\n';
@@ -133,7 +142,9 @@ std::string gauge_csv(const Comparison& comparison) {
 }
 
 std::string profiles_csv(const Comparison& comparison) {
-  std::string text = header(comparison, comparison.kind == scenes::Kind::slump ? "time_s,r_m" : "time_s,y_m");
+  std::string text = header(comparison, comparison.kind == scenes::Kind::slump  ? "time_s,r_m"
+                                        : comparison.kind == scenes::Kind::duct ? "time_s,y_m"
+                                                                                : "time_s,x_m");
   for (const double time : comparison.frames) {
     std::vector<std::optional<std::vector<double>>> columns;
     for (const RunView& view : comparison.runs) columns.push_back(view.profile(time, comparison.grid));
@@ -171,7 +182,7 @@ std::string measures_csv(const Json& json) {
 }  // namespace
 
 Json to_json(const Comparison& comparison) {
-  const bool slump = comparison.kind == scenes::Kind::slump;
+  const Gauge& gauge = gauge_of(comparison.kind);
   const Options& o = comparison.options;
   Json json = {{"format", "flowrest comparison"},
                {"format_version", 1},
@@ -204,6 +215,7 @@ Json to_json(const Comparison& comparison) {
                 {"verdict", info.value("verdict", "")},
                 {"noisy", view.noisy},
                 {"trouble", view.trouble},
+                {"walls_differ", view.walls_differ},
                 {"measures", measures_json(view, comparison.kind)},
                 {"made_by", provenance_json(view)}};
     for (const auto& [name, value] : run["measures"].items())
@@ -211,8 +223,12 @@ Json to_json(const Comparison& comparison) {
     json["runs"].push_back(run);
   }
   json["measure_columns"] = columns;
-  const double scale = slump ? 1e3 : 1.0;
-  const std::string unit = slump ? "_mm" : "_m_s";
+  const double scale = gauge.shown;
+  const std::string difference = (comparison.kind == scenes::Kind::duct ? "plug_velocity" : gauge.key) +
+                                 std::string("_difference") + gauge.suffix();
+  // Norms are of depths, or of a duct's velocities.
+  const double norm = comparison.kind == scenes::Kind::duct ? 1.0 : 1e3;
+  const std::string unit = comparison.kind == scenes::Kind::duct ? "_m_s" : "_mm";
   json["pairs"] = Json::array();
   for (const Pair& pair : comparison.pairs) {
     Json entry = {{"run", comparison.runs[pair.run].label},
@@ -221,13 +237,12 @@ Json to_json(const Comparison& comparison) {
                   {"at", Json::array()}};
     for (const auto& at : pair.at)
       entry["at"].push_back({{"time_s", at.time},
-                             {"l1" + unit, scale * at.error.l1},
-                             {"l2" + unit, scale * at.error.l2},
-                             {"linf" + unit, scale * at.error.linf},
+                             {"l1" + unit, norm * at.error.l1},
+                             {"l2" + unit, norm * at.error.l2},
+                             {"linf" + unit, norm * at.error.linf},
                              {"l1_relative", at.error.l1_relative},
                              {"l2_relative", at.error.l2_relative},
-                             {(slump ? "spread" : "plug_velocity") + std::string("_difference") + unit,
-                              scaled(at.gauge_difference, scale)}});
+                             {difference, scaled(at.gauge_difference, scale)}});
     json["pairs"].push_back(entry);
   }
   json["square"] = square_json(comparison);
@@ -237,7 +252,8 @@ Json to_json(const Comparison& comparison) {
     Json values = Json::array();
     for (const double stop : comparison.stops) values.push_back(scaled(view.gauge_at(stop), scale));
     json["arbitrary_stops"]["runs"].push_back(
-        {{"label", view.label}, {(slump ? "spread" : "plug_velocity") + unit, values}});
+        {{"label", view.label},
+         {(comparison.kind == scenes::Kind::duct ? "plug_velocity" : gauge.key) + gauge.suffix(), values}});
   }
   json["provenance"] = runs::provenance();
   return json;
@@ -257,8 +273,7 @@ void write_comparison(const Comparison& comparison, const std::filesystem::path&
   runs::write_atomically(report / "comparison.json",
                          json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
   runs::write_atomically(report / "measures.csv", measures_csv(json));
-  runs::write_atomically(report / (comparison.kind == scenes::Kind::slump ? "spread.csv" : "velocity.csv"),
-                         gauge_csv(comparison));
+  runs::write_atomically(report / (gauge_of(comparison.kind).key + ".csv"), gauge_csv(comparison));
   runs::write_atomically(report / "profiles.csv", profiles_csv(comparison));
   runs::write_atomically(report / "index.html", page);
 }
@@ -269,11 +284,11 @@ std::size_t write_figures(const Comparison& comparison, const std::filesystem::p
 
 void write_clip(const Comparison& comparison, const std::filesystem::path& clip) {
   constexpr std::size_t most_times = 120, most_bytes = 200'000'000;
-  const auto section = fields::section_of(comparison, most_times, most_bytes);
-  if (!section)
+  const auto sections = fields::sections_of(comparison, most_times, most_bytes);
+  if (sections.empty())
     throw runs::RunError(
         "no run of this comparison left particles or a case: there is nothing to make a clip of");
-  report::write_clip(page_of(comparison, to_json(comparison)), *section, clip);
+  report::write_clip(page_of(comparison, to_json(comparison)), sections.front(), clip);
 }
 
 }  // namespace flowrest::compare

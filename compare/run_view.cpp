@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "compare/measures/gauges.h"
+#include "compare/words.h"
 #include "runs/depth.h"
 
 namespace flowrest::compare {
@@ -17,10 +19,10 @@ namespace {
 constexpr double spread_threshold = 0.003;  // m
 
 /// The scene's gauge: from the history, or made of the profiles where the history lacks it.
-Series gauge_of(const runs::Run& run, scenes::Kind kind) {
-  Series series =
-      kind == scenes::Kind::slump ? column(run, "spread_mm", 1e-3) : column(run, "plug_velocity_m_s");
-  if (!series.empty()) return series;
+Series gauge_series(const runs::Run& run, scenes::Kind kind) {
+  const Gauge& gauge = gauge_of(kind);
+  Series series = column(run, gauge.column, gauge.si);
+  if (!series.empty() || (kind != scenes::Kind::slump && kind != scenes::Kind::duct)) return series;
   for (const auto& profile : run.profiles) {
     series.time.push_back(profile.time);
     series.value.push_back(kind == scenes::Kind::slump
@@ -39,14 +41,21 @@ void centre_duct_profiles(runs::Run& run) {
   }
 }
 
-std::vector<double> on_grid(const runs::Profile& profile, const std::vector<double>& grid, bool radial) {
+std::vector<double> on_grid(const runs::Profile& profile, const std::vector<double>& grid,
+                            const std::string& kind) {
+  const bool radial = kind == "slump";
   std::vector<double> values;
   values.reserve(grid.size());
   const auto& x = profile.coordinate;
   for (const double g : grid) {
     double value = 0.0;
-    if (x.empty() || g > x.back()) {
+    // A profile's last value stands up to the end of its ring or strip: where there is a wall, depth does not
+    // fall to it.
+    const double beyond = kind != "duct" && x.size() > 1 ? 0.5 * (x.back() - x[x.size() - 2]) : 0.0;
+    if (x.empty() || g > x.back() + beyond) {
       value = 0.0;
+    } else if (g > x.back()) {
+      value = profile.value.back();
     } else if (g >= x.front()) {
       value = interpolate(x, profile.value, g);
     } else if (radial && x.size() > 1) {
@@ -54,7 +63,7 @@ std::vector<double> on_grid(const runs::Profile& profile, const std::vector<doub
       value = profile.value[0] +
               (profile.value[0] - profile.value[1]) * (x[0] * x[0] - g * g) / (x[1] * x[1] - x[0] * x[0]);
     } else {
-      value = radial ? profile.value[0] : 0.0;
+      value = kind == "duct" ? 0.0 : profile.value[0];
     }
     values.push_back(value);
   }
@@ -126,7 +135,8 @@ RunView view_of(runs::Run run, scenes::Kind kind) {
     view.noise = colon == std::string::npos ? "no reason given" : verdict.substr(colon + 2);
   }
   if (kind == scenes::Kind::duct) centre_duct_profiles(view.run);
-  view.gauge = gauge_of(view.run, kind);
+  view.gauge = gauge_series(view.run, kind);
+  view.walls_differ = word(info, "/walls_differ");
   view.shear_rate = column(view.run, "shear_rate_p99_1_s");
   view.trouble = trouble_of(view);
   return view;
@@ -229,6 +239,15 @@ void note_missing(Comparison& comparison) {
   }
 }
 
+void note_walls(Comparison& comparison) {
+  std::map<std::string, std::vector<std::string>> by_difference;
+  for (const RunView& view : comparison.runs)
+    if (!view.walls_differ.empty()) by_difference[view.walls_differ].push_back(view.label);
+  for (const auto& [difference, labels] : by_difference)
+    comparison.notes.push_back(fmt::format("Walls of {} differ from the scene's: {}{}", words::listed(labels),
+                                           difference, difference.ends_with('.') ? "" : "."));
+}
+
 std::optional<double> RunView::gauge_at(double time) const {
   if (gauge.empty()) return std::nullopt;
   if (!exact && (time < gauge.time.front() - 1e-9 || (!held && time > gauge.end() + 1e-9)))
@@ -244,17 +263,17 @@ std::optional<double> RunView::gauge_at(double time) const {
 
 std::optional<std::vector<double>> RunView::profile(double time, const std::vector<double>& grid) const {
   const auto& profiles = run.profiles;
-  const bool radial = run.info["kind"] == "slump";
+  const std::string kind = run.info["kind"];
   if (profiles.empty()) return std::nullopt;
   const auto after = std::lower_bound(profiles.begin(), profiles.end(), time - 1e-9,
                                       [](const runs::Profile& p, double t) { return p.time < t; });
   if (after == profiles.end())
-    return held || exact ? std::optional(on_grid(profiles.back(), grid, radial)) : std::nullopt;
-  if (exact || std::abs(after->time - time) <= 1e-9) return on_grid(*after, grid, radial);
+    return held || exact ? std::optional(on_grid(profiles.back(), grid, kind)) : std::nullopt;
+  if (exact || std::abs(after->time - time) <= 1e-9) return on_grid(*after, grid, kind);
   if (after == profiles.begin()) return std::nullopt;
   const auto before = after - 1;
-  auto values = on_grid(*before, grid, radial);
-  const auto later = on_grid(*after, grid, radial);
+  auto values = on_grid(*before, grid, kind);
+  const auto later = on_grid(*after, grid, kind);
   const double weight = (time - before->time) / (after->time - before->time);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * (later[i] - values[i]);
   return values;

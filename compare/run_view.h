@@ -32,6 +32,9 @@ void check_same_scene(Comparison&);
 /// Notes the runs that the scene names and that are not among these, each with the command that makes it.
 void note_missing(Comparison&);
 
+/// Notes the runs whose walls are not those of the scene.
+void note_walls(Comparison&);
+
 /// The command that makes a run of the scene: "flowrest foam roussel-slump --model bi-viscous".
 std::string command_for(const Comparison&, const std::string& solver, const std::string& model);
 

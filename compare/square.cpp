@@ -90,6 +90,10 @@ void fill_square(Comparison& comparison) {
     if (!(square.*member)) square.missing.push_back(command_for(comparison, made_by.first, made_by.second));
   }
   if (filled < 2) return;
+  // Where the scene names no run in OpenFOAM there is no square to want.
+  const nlohmann::ordered_json::json_pointer named("/settings/runs/foam");
+  const auto& info = comparison.runs.front().run.info;
+  if (!square.foam_solid && !square.foam_fluid && info.contains(named) && info.at(named).empty()) return;
   if (filled == 4)
     for (const double time : comparison.frames)
       if (const auto at = split(comparison, square, time)) square.at.push_back(*at);

@@ -83,4 +83,48 @@ void write(const Duct& duct, const std::filesystem::path& directory) {
   writer.finish(runs::Status::end_time, "", "sound");
 }
 
+void write(const Box& box, const std::filesystem::path& directory) {
+  scenes::Overrides overrides;
+  overrides.model = box.model;
+  overrides.set = box.set;
+  const auto scene = scenes::load_scene("mix-b-lbox-sf600", overrides);
+  const auto& geometry = scene.l_box();
+  runs::RunWriter writer(directory, scene, "mpm");
+  writer.history_columns({"time_s", "front_mm", "end_height_mm", "start_height_mm", "flocculation_mean"});
+  for (int i = 0; i * 0.05 <= box.end + 1e-9; ++i) {
+    const double time = 0.05 * i;
+    const double front = std::min(box.front * (1.0 - std::exp(-time)), geometry.channel_length);
+    const double lambda = time < 2.0 ? 4.4 - time : 2.4 + box.recovery * (time - 2.0);
+    const bool arrived = front >= geometry.channel_length;
+    writer.history(std::vector{time, 1e3 * front, arrived ? 40.0 : 0.0, 600.0 - 100.0 * front, lambda});
+    if (i % 10 != 0) continue;
+    std::vector<double> x, depth;
+    constexpr int strips = 70;
+    for (int j = 0; j < strips; ++j) {
+      x.push_back((j + 0.5) * geometry.length() / strips);
+      depth.push_back(0.1 * std::max(0.0, 1.0 - x.back() / (geometry.reservoir_length + front)));
+    }
+    writer.profile(time, x, depth);
+  }
+  writer.info()["cpu_s"] = 30.0;
+  if (box.status == runs::Status::at_rest) writer.info()["rest_time_s"] = box.end;
+  if (!box.walls_differ.empty()) writer.info()["walls_differ"] = box.walls_differ;
+  writer.finish(box.status, "", "sound");
+}
+
+void write(const Funnel& funnel, const std::filesystem::path& directory) {
+  scenes::Overrides overrides;
+  overrides.model = funnel.model;
+  overrides.set = funnel.set;
+  const auto scene = scenes::load_scene("mix-a-vfunnel-sf0", overrides);
+  runs::RunWriter writer(directory, scene, "mpm");
+  writer.history_columns({"time_s", "discharged_fraction", "thinnest_sight_mm"});
+  for (int i = 0; i <= 80; ++i) {
+    const double time = 0.05 * i, left = std::max(0.0, 1.0 - time / funnel.empty);
+    writer.history(std::vector{time, 1.0 - left, 600.0 * left});
+  }
+  writer.info()["cpu_s"] = 20.0;
+  writer.finish(runs::Status::end_time, "", "sound");
+}
+
 }  // namespace flowrest::compare::synthetic

@@ -40,4 +40,25 @@ struct Duct {
 };
 void write(const Duct&, const std::filesystem::path& directory);
 
+/// An L-box whose front comes up to `front` as 1 - exp(-t), a wedge behind it; flocs break and grow again by
+/// `recovery`.
+struct Box {
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  double front = 0.520;    ///< m from the gate, approached; ends at the end wall
+  double recovery = 0.02;  ///< 1/s, of the flocculation state from 2 s on
+  double end = 10.0;       ///< s
+  runs::Status status = runs::Status::end_time;
+  std::string walls_differ;
+  std::vector<std::string> set;
+};
+void write(const Box&, const std::filesystem::path& directory);
+
+/// A funnel that discharges evenly until it is empty after `empty` seconds; its sight clears as fast.
+struct Funnel {
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  double empty = 2.0;  ///< s
+  std::vector<std::string> set;
+};
+void write(const Funnel&, const std::filesystem::path& directory);
+
 }  // namespace flowrest::compare::synthetic

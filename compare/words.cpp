@@ -31,6 +31,26 @@ std::string spread(double metres, const std::optional<double>& uncertainty) {
                      place * std::round(mm / place));
 }
 
+std::string reading(double value, const std::optional<double>& uncertainty, const std::string& unit) {
+  const std::string after = unit.empty() ? "" : " " + unit;
+  if (!uncertainty || !(*uncertainty > 0.0) || !std::isfinite(*uncertainty))
+    return significant(value, unit == "s" ? 2 : 3) + after;
+  // One digit of the uncertainty, two where it begins with 1; the value ends at the same place.
+  const double leading = std::pow(10.0, std::floor(std::log10(*uncertainty)));
+  const double least = unit == "mm" ? 1.0 : unit == "s" ? 0.01 : 0.0;
+  const double place = std::max(*uncertainty < 1.95 * leading ? 0.1 * leading : leading, least);
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(place) + 1e-9)));
+  return fmt::format("{:.{}f} ± {:.{}f}{}", place * std::round(value / place), decimals,
+                     place * std::max(1.0, std::round(*uncertainty / place)), decimals, after);
+}
+
+std::string of(const Gauge& gauge, double value, const std::optional<double>& uncertainty) {
+  if (gauge.unit == "mm") return spread(value, uncertainty);
+  if (gauge.unit == "m/s") return velocity(value);
+  const auto shown = uncertainty ? std::optional(gauge.shown * *uncertainty) : std::nullopt;
+  return reading(gauge.shown * value, shown, gauge.unit);
+}
+
 std::string time(double seconds) {
   return seconds < 9.95 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.0f} s", seconds);
 }

@@ -4,12 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "compare/measures/gauges.h"
+
 /// Quantities in words: no more digits than the quantity carries.
 namespace flowrest::compare::words {
 
 std::string spread(double metres);  ///< "575 mm"
 /// With no digit that the uncertainty does not support: "563 ± 8 mm", "620 ± 30 mm"; without one as above.
 std::string spread(double metres, const std::optional<double>& uncertainty);
+/// A value of a gauge (SI) in the unit of its figures, as `spread` and `velocity` have it: "580 ± 10 mm", "98
+/// %".
+std::string of(const Gauge&, double value, const std::optional<double>& uncertainty = std::nullopt);
+/// A reading in its unit, ended where its uncertainty begins: "1.42 ± 0.06 s", "70 ± 3 mm".
+std::string reading(double value, const std::optional<double>& uncertainty, const std::string& unit);
 std::string time(double seconds);  ///< "19 s", "4.6 s"
 std::string speed(
     double m_per_s);  ///< "0.25 mm/s", of creep; "less than 0.001 mm/s" below what can be told from rest

@@ -199,17 +199,17 @@ std::array<double, 4> extent_of(const std::vector<Source>& sources) {
   return box;
 }
 
-}  // namespace
+/// The height at which an L-box is cut level, m (Yu et al. 2026, Fig. 23).
+constexpr double level_height = 0.05;
 
-std::optional<report::Section> section_of(const Comparison& comparison, std::size_t most_times,
-                                          std::size_t budget) {
-  if (comparison.kind == scenes::Kind::duct) return std::nullopt;
+std::optional<report::Section> section_of(const Comparison& comparison, const Cut& cut,
+                                          std::size_t most_times, std::size_t budget) {
   std::vector<Source> sources;
   std::size_t recordings = 0;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const RunView& view = comparison.runs[i];
-    if (view.exact) continue;
-    sources.push_back({static_cast<int>(i), recording_of(view)});
+    if (view.exact || (cut.height && !is_solid(view))) continue;
+    sources.push_back({static_cast<int>(i), recording_of(view, cut)});
     recordings += sources.back().recording != nullptr;
     if (!sources.back().recording) sources.back().missing = how_to_make(view);
   }
@@ -230,6 +230,19 @@ std::optional<report::Section> section_of(const Comparison& comparison, std::siz
   const auto [west, east, bottom, top] = extent_of(sources);
   section.x = {comparison.radial ? "radius" : "distance", "mm", false, false, 1e3 * west, 1020.0 * east};
   section.z = {"height", "mm", false, false, 1e3 * bottom, 1020.0 * top};
+  if (cut.height) {
+    section.id = "level-sections";
+    section.title = fmt::format("seen from above, {:g} mm over the base", 1e3 * *cut.height);
+    section.caption =
+        "A level section, to scale: where bars have sheared the concrete, streaks of broken flocs (low λ) "
+        "trail behind "
+        "them. A half is shown from its plane of symmetry on.";
+    section.z.name = "distance across";
+    section.to_scale = true;
+    // What the streaks are seen by comes first.
+    std::stable_partition(section.quantities.begin(), section.quantities.end(),
+                          [](const auto& quantity) { return quantity.name == "flocculation"; });
+  }
   const std::size_t each = budget / (recordings * times.size() * (4 + section.quantities.size()));
   for (Source& source : sources) {
     if (!source.recording)
@@ -240,6 +253,23 @@ std::optional<report::Section> section_of(const Comparison& comparison, std::siz
       section.panels.push_back(particles_panel(source, section, std::max<std::size_t>(each, 100)));
   }
   return section;
+}
+
+}  // namespace
+
+std::vector<report::Section> sections_of(const Comparison& comparison, std::size_t most_times,
+                                         std::size_t budget) {
+  std::vector<report::Section> sections;
+  if (comparison.kind == scenes::Kind::duct) return sections;
+  const bool level = comparison.kind == scenes::Kind::l_box &&
+                     std::any_of(comparison.runs.begin(), comparison.runs.end(),
+                                 [](const RunView& view) { return !view.exact && is_solid(view); });
+  const std::size_t each = level ? budget / 2 : budget;
+  if (auto upright = section_of(comparison, {}, most_times, each)) sections.push_back(std::move(*upright));
+  if (level)
+    if (auto seen_from_above = section_of(comparison, {level_height}, most_times, each))
+      sections.push_back(std::move(*seen_from_above));
+  return sections;
 }
 
 }  // namespace flowrest::compare::fields

@@ -31,14 +31,17 @@ namespace {
 constexpr std::pair<const char*, const char*> particle_arrays[] = {
     {"shear rate", "shear_rate"}, {"pressure", "pressure"}, {"flocculation", "flocculation"}};
 
-/// Where the section lies across: on the axis of a slump, in the middle of anything else.
+/// Where an upright section lies across: on the plane of symmetry, which a half and a quarter are cut along.
 double section_plane(const RunView& view, double lowest, double highest) {
-  return view.run.info.value("kind", "") == "slump" ? 0.0 : 0.5 * (lowest + highest);
+  const std::string dimension = word(view.run.info, "/settings/geometry/dimension");
+  const bool cut =
+      dimension == "half" || dimension == "quarter" || view.run.info.value("kind", "") == "slump";
+  return cut ? std::clamp(0.0, lowest, highest) : 0.5 * (lowest + highest);
 }
 
 class Particles : public Recording {
  public:
-  Particles(const RunView& view, const fs::path& folder) : view_(view) {
+  Particles(const RunView& view, const fs::path& folder, const Cut& cut) : view_(view), cut_(cut) {
     std::ifstream file(folder / "particles.hdf.series");
     const auto series = nlohmann::json::parse(file, nullptr, false);
     if (series.is_discarded() || !series.contains("files")) return;
@@ -50,7 +53,7 @@ class Particles : public Recording {
     }
     const double cell = setting(view, "/mpm/cell").value_or(0.0);
     const double count = setting(view, "/mpm/particles_per_cell").value_or(1.0);
-    spacing_ = cell / (solid() ? std::cbrt(count) : std::sqrt(count));
+    spacing_ = cell * (is_solid(view_) ? 1.0 / std::cbrt(count) : 1.0 / std::sqrt(count));
   }
 
   State read(std::size_t index) override {
@@ -61,17 +64,19 @@ class Particles : public Recording {
     if (!grid) throw RunError(fmt::format("{}: cannot be read as VTKHDF", files_[index].string()));
     double bounds[6];
     grid->GetBounds(bounds);
-    const double plane = section_plane(view_, bounds[2], bounds[3]), reach = 0.6 * spacing_;
+    const int normal = cut_.height ? 2 : 1, up = cut_.height ? 1 : 2;
+    const double plane = cut_.height.value_or(section_plane(view_, bounds[2], bounds[3])),
+                 reach = 0.6 * spacing_;
     std::vector<vtkIdType> kept;
     State state;
     state.time = times_[index];
     for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
       double point[3];
       grid->GetPoint(i, point);
-      if (solid() && std::abs(point[1] - plane) > reach) continue;
+      if (is_solid(view_) && std::abs(point[normal] - plane) > reach) continue;
       kept.push_back(i);
       state.x.push_back(point[0]);
-      state.z.push_back(point[2]);
+      state.z.push_back(point[up]);
     }
     for (const auto& [name, array_name] : particle_arrays) {
       auto* array = grid->GetPointData()->GetArray(array_name);
@@ -83,18 +88,14 @@ class Particles : public Recording {
   }
 
  private:
-  bool solid() const {
-    const std::string dimension = word(view_.run.info, "/settings/geometry/dimension");
-    return dimension != "axisymmetric" && dimension != "plane";
-  }
-
   const RunView& view_;
+  Cut cut_;
   std::vector<fs::path> files_;
 };
 
 class FoamCase : public Recording {
  public:
-  FoamCase(const RunView& view, const fs::path& file) : view_(view) {
+  FoamCase(const RunView& view, const fs::path& file, const Cut& cut) : view_(view), cut_(cut) {
     reader_->SetFileName(file.c_str());
     reader_->CacheMeshOn();
     reader_->CreateCellToPointOff();
@@ -113,7 +114,8 @@ class FoamCase : public Recording {
     if (state.cover.empty())
       throw RunError(fmt::format("{}: no field alpha.concrete", view_.run.directory.string()));
     const auto u = component(grid, "U", 0), w = component(grid, "U", 2);
-    if (!u.empty())
+    // A level section does not show how the velocity changes with height.
+    if (!u.empty() && !cut_.height)
       state.values["shear rate"] = shear_rate(
           cells_, state.cover, u, w, word(view_.run.info, "/settings/geometry/dimension") == "axisymmetric",
           word(view_.run.info, "/settings/walls/base") != "slip");
@@ -137,16 +139,18 @@ class FoamCase : public Recording {
   void choose_cells(vtkUnstructuredGrid* grid) {
     double all[6];
     grid->GetBounds(all);
-    const double plane = section_plane(view_, all[2], all[3]) + 1e-7 * (all[3] - all[2]);
+    const int normal = cut_.height ? 4 : 2, up = cut_.height ? 2 : 4;
+    const double plane =
+        cut_.height.value_or(section_plane(view_, all[2], all[3])) + 1e-7 * (all[normal + 1] - all[normal]);
     for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
       double bounds[6];
       grid->GetCellBounds(i, bounds);
-      if (bounds[2] > plane || bounds[3] < plane) continue;
+      if (bounds[normal] > plane || bounds[normal + 1] < plane) continue;
       ids_.push_back(i);
       cells_.west.push_back(bounds[0]);
       cells_.east.push_back(bounds[1]);
-      cells_.bottom.push_back(bounds[4]);
-      cells_.top.push_back(bounds[5]);
+      cells_.bottom.push_back(bounds[up]);
+      cells_.top.push_back(bounds[up + 1]);
     }
   }
 
@@ -161,6 +165,7 @@ class FoamCase : public Recording {
   }
 
   const RunView& view_;
+  Cut cut_;
   vtkNew<vtkOpenFOAMReader> reader_;
   std::vector<vtkIdType> ids_;
 };
@@ -221,15 +226,21 @@ std::vector<double> shear_rate(const Cells& cells, const std::vector<double>& co
   return rates;
 }
 
-std::unique_ptr<Recording> recording_of(const RunView& view) {
+bool is_solid(const RunView& view) {
+  const std::string dimension = word(view.run.info, "/settings/geometry/dimension");
+  return dimension != "axisymmetric" && dimension != "plane";
+}
+
+std::unique_ptr<Recording> recording_of(const RunView& view, const Cut& cut) {
+  if (cut.height && !is_solid(view)) return nullptr;
   // VTK complains on the terminal about every half-written file; what matters is said by the page.
   vtkObject::GlobalWarningDisplayOff();
   const fs::path& run = view.run.directory;
   std::unique_ptr<Recording> recording;
   if (fs::exists(run / "particles" / "particles.hdf.series"))
-    recording = std::make_unique<Particles>(view, run / "particles");
+    recording = std::make_unique<Particles>(view, run / "particles", cut);
   else if (fs::exists(run / "case" / "case.foam"))
-    recording = std::make_unique<FoamCase>(view, run / "case" / "case.foam");
+    recording = std::make_unique<FoamCase>(view, run / "case" / "case.foam", cut);
   return recording && !recording->times().empty() ? std::move(recording) : nullptr;
 }
 

@@ -13,7 +13,13 @@
 /// cases.
 namespace flowrest::compare::fields {
 
-/// Points or cells of a section at one time; lists of equal length, values by the quantity's name.
+/// Where a body is cut: upright along its plane of symmetry, or level at a height.
+struct Cut {
+  std::optional<double> height = {};  ///< m; empty: upright
+};
+
+/// Points or cells of a section at one time; z is a height, or the distance across where the cut is level;
+/// lists of equal length, values by the quantity's name.
 struct State {
   double time = 0.0;                                  ///< s
   std::vector<double> x, z;                           ///< m, of the particles or of the cells' centres
@@ -43,8 +49,11 @@ class Recording {
   double spacing_ = 0.0;
 };
 
-/// The run's recording; nothing where it left none.
-std::unique_ptr<Recording> recording_of(const RunView&);
+/// Whether the run computed a body in space, which can be cut in more than one way.
+bool is_solid(const RunView&);
+
+/// The run's recording; nothing where it left none, or where it has no such cut.
+std::unique_ptr<Recording> recording_of(const RunView&, const Cut& = {});
 
 /// sqrt(2 D:D) of cells on a grid of columns and rows, 1/s. Velocities at the faces are weighted by the
 /// concrete on both sides; the base holds the velocity `no_slip` (zero) or lets it slip. `radial`: x is a

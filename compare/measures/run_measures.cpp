@@ -6,6 +6,7 @@
 
 #include "compare/exact/creep.h"
 #include "compare/exact/solutions.h"
+#include "compare/measures/gauges.h"
 #include "compare/run_view.h"
 #include "runs/depth.h"
 
@@ -50,6 +51,7 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
   if (!view.fluid) return 0.0;
   const auto fluid = regularised_fluid(view);
   if (!fluid) return std::nullopt;
+  if (kind != scenes::Kind::slump && kind != scenes::Kind::duct) return std::nullopt;
   if (kind == scenes::Kind::duct) {
     const auto height = setting(view, "/geometry/height");
     const auto stages = body_force(view);
@@ -92,23 +94,29 @@ Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
 
 std::optional<double> cell_of(const RunView& view) { return setting(view, "/" + view.solver + "/cell"); }
 
-/// By how much the spread at the end still changes with the grid: the difference to the run of the same law
-/// and solver whose cell is nearest, taken on to zero cell size at first order.
-std::optional<double> grid_difference(const Comparison& comparison, const RunView& view) {
+/// The run of the same law and solver on the nearest other grid.
+RunView* other_grid(Comparison& comparison, const RunView& view) {
   const auto own = cell_of(view);
-  std::optional<double> found;
+  RunView* found = nullptr;
   double closest = std::numeric_limits<double>::infinity();
-  for (const RunView& other : comparison.runs) {
+  for (RunView& other : comparison.runs) {
     const auto cell = cell_of(other);
-    if (!own || !cell || other.solver != view.solver || other.model != view.model ||
-        !other.measures.gauge_end)
+    if (!own || !cell || other.solver != view.solver || other.model != view.model || !other.trouble.empty())
       continue;
-    const double ratio = *own / *cell;
-    if (std::abs(std::log(ratio)) < 0.1 || std::abs(std::log(ratio)) >= closest) continue;
-    closest = std::abs(std::log(ratio));
-    found = std::abs(*view.measures.gauge_end - *other.measures.gauge_end) / std::abs(1.0 - 1.0 / ratio);
+    const double away = std::abs(std::log(*own / *cell));
+    if (away < 0.1 || away >= closest) continue;
+    closest = away;
+    found = &other;
   }
   return found;
+}
+
+/// By how much the gauge at the end still changes with the grid, taken on to zero cell size at first order.
+std::optional<double> grid_difference(Comparison& comparison, const RunView& view) {
+  const RunView* other = other_grid(comparison, view);
+  if (!other || !other->measures.gauge_end) return std::nullopt;
+  return grid_uncertainty(*view.measures.gauge_end, *cell_of(view), *other->measures.gauge_end,
+                          *cell_of(*other));
 }
 
 /// The run whose arrested spread overshoots are counted from: elasto-viscoplastic, the same solver if it can
@@ -119,6 +127,9 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
   for (const RunView& other : comparison.runs) {
     if (other.model != "elasto-viscoplastic" || other.exact || other.gauge.empty() || !other.trouble.empty())
       continue;
+    // A front in a box that still runs is no measure of rest.
+    const bool rests = other.held || other.measures.cause == Cause::at_rest;
+    if (comparison.kind != scenes::Kind::slump && !rests) continue;
     const int score = 4 * (other.held || other.measures.cause == Cause::at_rest) +
                       2 * (other.solver == view.solver) + !other.noisy;
     if (score > best_score) {
@@ -133,7 +144,7 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
 
 void measure(RunView& view, const Comparison& comparison) {
   const Options& options = comparison.options;
-  const bool slump = comparison.kind == scenes::Kind::slump;
+  const bool slump = comparison.kind == scenes::Kind::slump, grows = grows_to_rest(comparison.kind);
   Measures& m = view.measures;
   const Json& info = view.run.info;
   if (!view.gauge.empty()) {
@@ -157,6 +168,8 @@ void measure(RunView& view, const Comparison& comparison) {
     return;
   }
   m.rest_declared = number(info, "/rest_time_s");
+  for (const Reading& reading : readings_of(comparison.kind))
+    m.readings[reading.quantity].value = read(view.run, reading.quantity);
   if (const auto growth = number(info, "/growth_to_come"); slump && !view.fluid && growth && m.gauge_end)
     m.growth_to_come = *growth * *m.gauge_end;
   m.cpu = number(info, "/cpu_s");
@@ -166,11 +179,13 @@ void measure(RunView& view, const Comparison& comparison) {
   m.mass_drift = drift(column(view.run, "mass_kg"));
   m.rest_by_shear_rate = settles_below(view.shear_rate, options.rest_shear_rate);
   m.predicted_creep = predicted_creep(view, comparison.kind);
-  if (view.gauge.empty()) return;
+  if (view.gauge.empty() || comparison.kind == scenes::Kind::v_funnel) return;
   const double end = view.gauge.end();
-  const auto last = trend(view.gauge, end - options.residual_window, end);
+  // Of a short record the last fifth, so that how the flow began is not taken for how it ends.
+  const double window = std::min(options.residual_window, 0.2 * (end - view.gauge.time.front()));
+  const auto last = trend(view.gauge, end - window, end);
   if (last) m.residual_scatter = last->scatter;
-  if (slump) {
+  if (grows) {
     const Series rate = rate_of_change(view.gauge, options.rate_window);
     m.rest_by_spread_rate = settles_below(rate, options.rest_spread_rate);
     // A cone takes a moment to start: rest before it has moved is not rest.
@@ -187,13 +202,13 @@ void measure(RunView& view, const Comparison& comparison) {
     if (const auto settled = settles_below(view.gauge, threshold);
         settled && *settled >= step && largest > 0.0)
       m.stop_after_step = *settled - step;
-    Series window;
+    Series last_values;
     for (std::size_t i = 0; i < view.gauge.time.size(); ++i)
-      if (view.gauge.time[i] >= end - options.residual_window) window.value.push_back(view.gauge.value[i]);
-    std::nth_element(window.value.begin(),
-                     window.value.begin() + static_cast<std::ptrdiff_t>(window.value.size() / 2),
-                     window.value.end());
-    m.residual = window.value[window.value.size() / 2];
+      if (view.gauge.time[i] >= end - window) last_values.value.push_back(view.gauge.value[i]);
+    std::nth_element(last_values.value.begin(),
+                     last_values.value.begin() + static_cast<std::ptrdiff_t>(last_values.value.size() / 2),
+                     last_values.value.end());
+    m.residual = last_values.value[last_values.value.size() / 2];
     m.cause = cause_of(view, options, threshold);
   }
   for (const double stop : comparison.stops) {
@@ -205,7 +220,7 @@ void measure(RunView& view, const Comparison& comparison) {
 }
 
 void measure_overshoot(Comparison& comparison) {
-  if (comparison.kind != scenes::Kind::slump) return;
+  if (!grows_to_rest(comparison.kind)) return;
   for (RunView& view : comparison.runs) {
     if (view.exact) continue;
     const RunView* reference = arrested_reference(comparison, view);
@@ -223,7 +238,12 @@ bool ends_in_film(const Comparison& comparison, double sensitivity) {
 }
 
 void measure_uncertainty(Comparison& comparison) {
-  if (comparison.kind != scenes::Kind::slump) return;
+  for (RunView& view : comparison.runs)
+    if (RunView* other = other_grid(comparison, view))
+      for (auto& [quantity, reading] : view.measures.readings)
+        if (const auto& value = other->measures.readings[quantity].value; reading.value && value)
+          reading.uncertainty = grid_uncertainty(*reading.value, *cell_of(view), *value, *cell_of(*other));
+  if (comparison.kind == scenes::Kind::duct) return;
   for (RunView& view : comparison.runs) {
     Measures& m = view.measures;
     if (view.exact || !m.gauge_end) continue;
@@ -234,7 +254,7 @@ void measure_uncertainty(Comparison& comparison) {
     };
     if (const auto grid = grid_difference(comparison, view))
       raise(*grid, "the difference between its grids");
-    else if (const auto cell = cell_of(view))
+    else if (const auto cell = cell_of(view); cell && grows_to_rest(comparison.kind))
       raise(*cell, "its cell (there is no second grid)");
     if (m.residual_scatter) raise(2.0 * *m.residual_scatter, "the scatter of its record");
     if (m.spread_1_5mm && m.spread_6mm && ends_in_film(comparison, *m.spread_1_5mm - *m.spread_6mm))

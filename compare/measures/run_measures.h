@@ -11,9 +11,9 @@ void measure(RunView&, const Comparison&);
 /// How far each slump stands past the arrested spread of an elasto-viscoplastic run.
 void measure_overshoot(Comparison&);
 
-/// How well the spread at the end of each run is known: by a run of the same law and solver on another grid
-/// where there is one, else by its cell; never less than its scatter nor, where its edge is a film, than half
-/// of what it changes by when the edge is read at 1.5 or at 6 mm.
+/// How well the readings of each run are known by another grid, and its gauge at the end: by a run of the
+/// same law and solver on another grid where there is one, else by its cell; never less than its scatter nor,
+/// where its edge is a film, than half of what it changes by when the edge is read at 1.5 or at 6 mm.
 void measure_uncertainty(Comparison&);
 
 /// Whether the spread's change between readings at 1.5 and at 6 mm of depth (m) is that of a film and not of

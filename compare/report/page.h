@@ -130,6 +130,7 @@ struct Section {
   std::vector<double> times = {};  ///< s, of the slider
   std::vector<Quantity> quantities = {};
   std::vector<Panel> panels = {};
+  bool to_scale = false;  ///< z is never stretched: it is no height
 };
 
 /// How a number is written.

@@ -140,7 +140,7 @@ Json json_of(const Section& section) {
   for (const auto& panel : section.panels) panels.push_back(json_of(panel));
   return {{"type", "section"},       {"clock", section.clock},          {"x", json_of(section.x)},
           {"z", json_of(section.z)}, {"times", numbers(section.times)}, {"quantities", quantities},
-          {"panels", panels}};
+          {"panels", panels},        {"to_scale", section.to_scale}};
 }
 
 const char* name_of(Format::Kind kind) {

@@ -26,7 +26,8 @@ const drawSection = (block, body) => {
   });
   const grid = element('div', {class: 'panels'}, ...panels.map(panel => panel.node));
   const decode = frame => frame.decoded || (frame.decoded = {x: wordsOf(frame.x), z: wordsOf(frame.z), cover: bytesOf(frame.cover), values: frame.values.map(bytesOf)});
-  const margin = {left: 44, right: 10, top: 8, bottom: 34};
+  // A level section is too low for its axis to be named inside it.
+  const margin = {left: 44, right: 10, top: block.to_scale ? 24 : 8, bottom: 34};
   // Heights are stretched by a whole number once the material lies flat; every panel by the same.
   const topOf = (panel, frame) => {
     const {x: px, z: pz, cover} = decode(frame);
@@ -83,7 +84,7 @@ const drawSection = (block, body) => {
     ctx.restore();
     axes(ctx, scale, stretch, foot, width);
     const off = Math.abs(frame.time - time) > 0.02 * Math.max(time, 1e-9) + 1e-6;
-    panel.note.textContent = (off ? `State at ${timeText(frame.time)}. ` : '') + (stretch > 1 ? `Heights \u00d7 ${stretch}` : 'Heights to scale');
+    panel.note.textContent = (off ? `State at ${timeText(frame.time)}. ` : '') + (stretch > 1 ? `Heights \u00d7 ${stretch}` : block.to_scale ? 'To scale' : 'Heights to scale');
   };
   const axes = (ctx, scale, stretch, foot, width) => {
     ctx.strokeStyle = palette.soft;
@@ -111,13 +112,13 @@ const drawSection = (block, body) => {
     ctx.textAlign = 'right'; ctx.textBaseline = 'bottom';
     ctx.fillText(axisName(x), width - margin.right, foot + 33);
     ctx.textAlign = 'left'; ctx.textBaseline = 'top';
-    ctx.fillText(axisName(z), margin.left + 6, margin.top);
+    ctx.fillText(axisName(z), margin.left + (block.to_scale ? -30 : 6), block.to_scale ? 4 : margin.top);
   };
   let shownTime = 0;
   const paint = () => {
     const visible = panels.filter(panel => panel.entry.shown && !panel.panel.missing && panel.frames.length);
     const top = visible.reduce((most, panel) => Math.max(most, topOf(panel, panel.frames[nearestFrame(panel.frames.map(f => f.time), shownTime)])), 0) - z.from;
-    const stretch = top > 0 ? Math.max(1, Math.min(8, Math.floor(high / (1.2 * top)))) : 1;
+    const stretch = top > 0 && !block.to_scale ? Math.max(1, Math.min(8, Math.floor(high / (1.2 * top)))) : 1;
     for (const panel of panels) panel.node.hidden = !panel.entry.shown;
     for (const panel of visible) paintPanel(panel, shownTime, stretch);
   };
