@@ -244,7 +244,9 @@ std::vector<Key> mpm_keys() {
       number("mpm.apic_relaxation_time", "s", above(0.0, largest_time),
              AT(draft.scene.mpm.apic_relaxation_time),
              "time over which the transfer of quadratic-apic smooths velocities once, whatever the step")
-          .otherwise("that of a step of CFL 0.75, which is plain APIC"),
+          .otherwise(
+              "that of a step of CFL 0.75, which is plain APIC; beside walls that do not lie along the "
+              "grid or have friction 0.02"),
       number("mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
              "share of the volume by which particles overlap that is taken back per unit of shear strain; 0 "
              "lets material that is sheared for long sink into itself")

@@ -15,8 +15,10 @@ constexpr int most_sweeps = 12;
 constexpr double tolerance = 5e-3;
 /// Weights of nodes that are light beside this share of the heaviest around a point fade with their mass. At
 /// the edge of a body a light node would take up the whole constraint, at many times the body's speed, and
-/// hold nothing. In a filled cell it moves the place at which the wall holds the body by 4 % of a cell.
-constexpr double light_share = 0.05;
+/// hold nothing. In a filled cell it moves the place at which the wall holds the body a little into the body:
+/// at 0.05 a duct of five cells flows another 8 % slower than at 0.01. Linear functions, whose nodes behind
+/// a wall are heavier, do not gain by less.
+constexpr double light_share_quadratic = 0.01, light_share_linear = 0.05;
 constexpr double smallest_share = 1e-12;
 
 int floor_divide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -139,6 +141,7 @@ void WallContact<T>::place(const SparseBlocks& blocks, double time) {
 
 template <class T>
 void WallContact<T>::gather_mobilities(const T* nodes, double step) {
+  const T light_share = static_cast<T>(grid_.quadratic ? light_share_quadratic : light_share_linear);
   touched_.clear();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Point& p = points_[i];
@@ -150,7 +153,7 @@ void WallContact<T>::gather_mobilities(const T* nodes, double step) {
     T before = p.missing, after = T(0), mobility[3] = {};
     for (std::size_t e = 0; e < p.count; ++e) {
       const T mass = nodes[entries[e].record];
-      const T fading = mass / (mass + T(light_share) * heaviest);
+      const T fading = mass / (mass + light_share * heaviest);
       entries[e].per_mass = mass > T(smallest_share) * heaviest ? T(1) / mass : T(0);
       // Shape functions sum to one; so do what is left of them, but for folded nodes, whose sum stays.
       T largest = T(0);

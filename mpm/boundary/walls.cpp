@@ -146,15 +146,17 @@ double Cylinder::distance(const Vector& x) const {
 }
 
 std::vector<SurfacePoint> Cylinder::surface(double spacing) const {
-  constexpr int fewest_around = 8;
-  const int around = std::max(fewest_around, parts(2.0 * std::numbers::pi * radius_, spacing));
+  constexpr int fewest_around = 4;
+  constexpr double depth = 0.15;  // of the spacing; never more than half of the radius
+  const double radius = radius_ - std::min(depth * spacing, 0.5 * radius_);
+  const int around = std::max(fewest_around, parts(2.0 * std::numbers::pi * radius, spacing));
   const int along = dimension_ == 3 ? parts(to_ - from_, spacing) : 1;
   std::vector<SurfacePoint> points;
   for (int j = 0; j < along; ++j)
     for (int i = 0; i < around; ++i) {
       const double angle = 2.0 * std::numbers::pi * (i + 0.5) / around;
       const Vector normal = {std::cos(angle), std::sin(angle), 0.0};
-      points.push_back({{centre_[0] + radius_ * normal[0], centre_[1] + radius_ * normal[1],
+      points.push_back({{centre_[0] + radius * normal[0], centre_[1] + radius * normal[1],
                          dimension_ == 3 ? middle(from_, to_, j, along) : 0.0},
                         normal});
     }

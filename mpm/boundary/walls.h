@@ -93,6 +93,11 @@ class Prism final : public WallShape {
 };
 
 /// A round bar along one axis of three (upright: the last), or in two dimensions a disc.
+///
+/// A bar about as thick as a cell is held by shape functions wider than itself and would block more than its
+/// own width: its surface points lie a little within it and are as few as hold it (retracted forcing points;
+/// Breugem 2012, J. Comput. Phys. 231), so many and so deep that it drags as Stokes' flow through a lattice
+/// of bars says, from one cell to a diameter on (mpm_walls_test).
 class Cylinder final : public WallShape {
  public:
   /// `centre` lies on the axis; the bar reaches from `from` to `to` along it. m
