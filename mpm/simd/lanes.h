@@ -58,4 +58,17 @@ FLOWREST_INLINE const Lanes<T, Bytes>& lanes_at(const T* p) {
   return *reinterpret_cast<const Lanes<T, Bytes>*>(p);
 }
 
+/// Four records' numbers the other way round: row i takes number i of each.
+template <class T>
+FLOWREST_INLINE void transpose(Record<T> (&rows)[4]) {
+  const Record<T> low_01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+  const Record<T> high_01 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+  const Record<T> low_23 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+  const Record<T> high_23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+  rows[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7);
+  rows[2] = __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5);
+  rows[3] = __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7);
+}
+
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

@@ -35,7 +35,7 @@ struct AxisBounds {
 
 /// A particle that left its cell in this step: by one cell at most along each axis.
 struct Mover {
-  std::uint32_t particle;
+  std::uint32_t index;  ///< in its block
   std::int8_t shift[3];
 };
 
@@ -52,12 +52,12 @@ struct BlockSums {
 
 /// What a kernel sees of one occupied block.
 struct BlockView {
-  int origin[3] = {0, 0, 0};             ///< first cell, in cells
-  std::uint32_t slot = 0;                ///< its place in the arrays of arenas and nodes
-  const std::uint32_t* list = nullptr;   ///< particles, sorted by cell
-  const std::uint32_t* start = nullptr;  ///< cells_per_block + 1 offsets into list
-  bool contiguous = false;               ///< list[i] == list[0] + i
-  bool near_wall = false;                ///< a wall that is no plane along the grid may reach into it
+  int origin[3] = {0, 0, 0};  ///< first cell, in cells
+  std::uint32_t slot = 0;     ///< its place in the arrays of arenas and nodes
+  std::uint32_t first = 0;    ///< of its particles in their arrays, where they lie sorted by cell
+  const std::uint32_t* start =
+      nullptr;             ///< of each cell's particles, from `first`; cells_per_block + 1 of them
+  bool near_wall = false;  ///< a wall that is no plane along the grid may reach into it
   const std::uint32_t* plus =
       nullptr;              ///< slots of the 2^Dim blocks at +{0,1} per axis; no_slot where absent
   Mover* movers = nullptr;  ///< room for every particle of the block

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <utility>
 #include <vector>
 
-#include "mpm/solver/layout.h"
+#include "mpm/solver/sparse_blocks.h"
 
 namespace flowrest::mpm {
 
@@ -45,16 +47,15 @@ struct ParticleLayout {
   bool flocculation = false;  ///< thixotropy
 };
 
-/// The particles as a structure of arrays.
+/// The particles as a structure of arrays, with more places than particles: where they lie is for
+/// SparseBlocks to say.
 template <class T>
 class Particles {
  public:
   Particles() = default;
-  Particles(const ParticleLayout& layout, std::size_t count) : layout_(layout), count_(count) {
-    const auto add = [&](T*& member) {
-      arrays_.emplace_back(count);
-      members_.push_back(&member);
-    };
+  /// Without room for any until it is made.
+  explicit Particles(const ParticleLayout& layout) : layout_(layout) {
+    const auto add = [&](T*& member) { members_.push_back(&member); };
     const int dim = layout.dimension;
     for (int a = 0; a < dim; ++a) add(view_.position[a]);
     for (int a = 0; a < dim; ++a) add(view_.velocity[a]);
@@ -68,40 +69,108 @@ class Particles {
     if (layout.flocculation) add(view_.lambda);
     if (layout.advection)
       for (int a = 0; a < dim; ++a) add(view_.advection[a]);
-    for (std::size_t i = 0; i < arrays_.size(); ++i) *members_[i] = arrays_[i].data();
   }
   Particles(const Particles&) = delete;
   Particles& operator=(const Particles&) = delete;
 
-  std::size_t size() const { return count_; }
   const ParticleLayout& layout() const { return layout_; }
   const ParticleView<T>& view() const { return view_; }
-  std::size_t bytes() const { return arrays_.size() * count_ * sizeof(T); }
-  int array_count() const { return static_cast<int>(arrays_.size()); }
+  std::size_t bytes() const { return (arrays_.size() * room_ + spare_.size()) * sizeof(T); }
+  int array_count() const { return static_cast<int>(members_.size()); }
   T* array(int i) { return arrays_[static_cast<std::size_t>(i)].data(); }
   const T* array(int i) const { return arrays_[static_cast<std::size_t>(i)].data(); }
 
-  /// Rearranges every array so that new[i] = old[order[i]].
-  void permute(const std::vector<std::uint32_t>& order, int threads) {
-    if (scratch_.size() != count_) scratch_ = AlignedArray<T>(count_);
-    for (std::size_t k = 0; k < arrays_.size(); ++k) {
-      const T* from = arrays_[k].data();
-      T* to = scratch_.data();
-      const auto n = static_cast<std::int64_t>(count_);
-#pragma omp parallel for schedule(static) num_threads(threads)
-      for (std::int64_t i = 0; i < n; ++i) to[i] = from[order[static_cast<std::size_t>(i)]];
-      std::swap(arrays_[k], scratch_);
+  /// Makes arrays of so many places, all zero.
+  void make_room(std::size_t places) {
+    room_ = places;
+    arrays_.clear();
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      arrays_.emplace_back(places);
       *members_[k] = arrays_[k].data();
     }
   }
 
+  /// Sets aside what is between two blocks, and moves whole blocks to new places. Call `settle` next.
+  void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan, int threads) {
+    set_aside(plan.departing, threads);
+    if (plan.laid_out_anew) {
+      lay_out_anew(plan.new_places, blocks.room(), threads);
+    } else {
+      for (auto& array : arrays_)
+        for (const auto& move : plan.new_places)
+          std::copy_n(array.data() + move.from, move.count, array.data() + move.to);
+    }
+  }
+
+  /// Puts one block's particles where they belong since the last relocation. Blocks may be settled side by
+  /// side, each thread with a `table` of its own.
+  void settle(SparseBlocks::Reordering& order, std::vector<T>& table) {
+    if (order.pieces.empty()) return;
+    // Laid out on the table in their new order, then put back where the order has changed. Most pieces are
+    // shorter than a chunk: what is copied too much, the next one covers.
+    constexpr std::size_t chunk = 64 / sizeof(T);
+    std::size_t all = chunk;
+    for (const auto& piece : order.pieces) all += piece.count;
+    if (table.size() < all) table.resize(all + all / 4);
+    for (std::size_t k = 0; k < arrays_.size(); ++k) {
+      T* here = arrays_[k].data() + order.first;
+      T* to = table.data();
+      for (const auto& piece : order.pieces) {
+        for (std::size_t i = 0; i < piece.count; i += chunk)
+          std::memcpy(to + i, here + piece.from + i, sizeof(T) * chunk);
+        to += piece.count;
+      }
+      const T* from = table.data();
+      for (std::size_t p = 0; p < order.pieces.size();) {
+        const std::uint32_t begin = order.pieces[p].to;
+        std::uint32_t end = begin;
+        for (; p < order.pieces.size() && order.pieces[p].to == end; ++p) end += order.pieces[p].count;
+        std::copy_n(from, end - begin, here + begin);
+        from += end - begin;
+      }
+      for (const auto& arrival : order.arrivals)
+        here[arrival.to] = departed_[arrival.departed * arrays_.size() + k];
+    }
+    order.pieces.clear();
+    order.arrivals.clear();
+  }
+
  private:
+  void set_aside(const std::vector<std::uint32_t>& places, int threads) {
+    departed_.resize(places.size() * arrays_.size());
+    const auto n = static_cast<std::int64_t>(places.size());
+#pragma omp parallel for schedule(static) num_threads(threads) if (n > 1000)
+    for (std::int64_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < arrays_.size(); ++k)
+        departed_[static_cast<std::size_t>(i) * arrays_.size() + k] =
+            arrays_[k][places[static_cast<std::size_t>(i)]];
+  }
+
+  void lay_out_anew(const std::vector<SparseBlocks::NewPlace>& moves, std::size_t room, int threads) {
+    const auto n = static_cast<std::int64_t>(moves.size());
+    for (std::size_t k = 0; k < arrays_.size(); ++k) {
+      if (spare_.size() != room) spare_ = AlignedArray<T>(room);
+      const T* from = arrays_[k].data();
+      T* to = spare_.data();
+#pragma omp parallel for schedule(static) num_threads(threads)
+      for (std::int64_t i = 0; i < n; ++i) {
+        const auto& move = moves[static_cast<std::size_t>(i)];
+        std::copy_n(from + move.from, move.count, to + move.to);
+      }
+      std::swap(arrays_[k], spare_);
+      *members_[k] = arrays_[k].data();
+    }
+    room_ = room;
+    spare_ = {};
+  }
+
   ParticleLayout layout_;
-  std::size_t count_ = 0;
+  std::size_t room_ = 0;
   std::vector<AlignedArray<T>> arrays_;
   std::vector<T**> members_;
   ParticleView<T> view_;
-  AlignedArray<T> scratch_;
+  AlignedArray<T> spare_;
+  std::vector<T> departed_;  ///< those that are between two blocks, all values of one after the other
 };
 
 }  // namespace flowrest::mpm

@@ -18,8 +18,6 @@ namespace {
 
 /// A thread is worth its barriers from about this many particles each.
 constexpr std::size_t particles_per_thread = 1500;
-constexpr int steps_between_rearrangements = 16;
-constexpr double disorder_worth_rearranging = 0.25;
 constexpr int usual_tile_capacity = 96;
 
 template <class T>
@@ -28,32 +26,33 @@ class SolverOf final : public Solver {
   SolverOf(const SolverSettings& settings, const std::vector<Seed>& seeds)
       : SolverOf(settings, seeds.size()) {
     std::vector<CellIndex> cells(seeds.size());
+    for (std::size_t p = 0; p < seeds.size(); ++p) cells[p] = seeds[p].cell;
+    const auto places = blocks_.build(cells);
+    particles_.make_room(blocks_.room());
     const ParticleView<T>& v = particles_.view();
     for (std::size_t p = 0; p < seeds.size(); ++p) {
-      cells[p] = seeds[p].cell;
+      const std::uint32_t at = places[p];
       for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
-        v.position[a][p] =
+        v.position[a][at] =
             std::clamp(static_cast<T>(seeds[p].position[a]), lowest_in_cell(), highest_in_cell());
-        v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
+        v.velocity[a][at] = static_cast<T>(seeds[p].velocity[a]);
       }
-      v.mass[p] = static_cast<T>(seeds[p].volume * settings.density);
-      v.volume_ratio[p] = static_cast<T>(seeds[p].volume_ratio);
-      v.pressure[p] = parameters_.state.at(v.volume_ratio[p]).pressure;
-      if (v.lambda) v.lambda[p] = static_cast<T>(seeds[p].flocculation);
+      v.mass[at] = static_cast<T>(seeds[p].volume * settings.density);
+      v.volume_ratio[at] = static_cast<T>(seeds[p].volume_ratio);
+      v.pressure[at] = parameters_.state.at(v.volume_ratio[at]).pressure;
+      if (v.lambda) v.lambda[at] = static_cast<T>(seeds[p].flocculation);
     }
-    blocks_.build(cells);
-    rearrange();
-    tile_capacity_ = usual_tile_capacity;
     prepare();
   }
 
   SolverOf(const SolverSettings& settings, const SolverState& state)
       : SolverOf(settings, state.cells.size()) {
+    const auto places = blocks_.build(state.cells);
+    particles_.make_room(blocks_.room());
     for (int k = 0; k < particles_.array_count(); ++k) {
       const auto& from = state.arrays.at(static_cast<std::size_t>(k));
-      for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[p] = static_cast<T>(from[p]);
+      for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[places[p]] = static_cast<T>(from[p]);
     }
-    blocks_.build(state.cells);
     tile_capacity_ = state.tile_capacity;
     if (contact_) contact_->set_forces(state.wall_forces);
     prepare();
@@ -78,6 +77,7 @@ class SolverOf final : public Solver {
   Vector wall_force(std::size_t wall) const override { return contact_ ? contact_->force(wall) : Vector{}; }
 
   void visit(const std::function<void(const ParticleBatch&)>& use) override {
+    settle();
     ParticleBatch batch;
     for (const auto slot : blocks_.occupied()) {
       fill(batch, blocks_.view(slot));
@@ -86,21 +86,21 @@ class SolverOf final : public Solver {
   }
 
   SolverState state() override {
+    settle();
     SolverState out;
-    const auto order = blocks_.sorted_order();
-    out.cells.reserve(order.size());
-    for (const auto p : order) out.cells.push_back(blocks_.cell_of(p));
+    const auto places = blocks_.sorted_places();
+    out.cells = blocks_.sorted_cells();
     for (int k = 0; k < particles_.array_count(); ++k) {
       auto& to = out.arrays.emplace_back();
-      to.reserve(order.size());
-      for (const auto p : order) to.push_back(static_cast<double>(particles_.array(k)[p]));
+      to.reserve(places.size());
+      for (const auto p : places) to.push_back(static_cast<double>(particles_.array(k)[p]));
     }
     out.tile_capacity = tile_capacity_;
     if (contact_) out.wall_forces = contact_->forces();
     return out;
   }
 
-  std::size_t particle_count() const override { return particles_.size(); }
+  std::size_t particle_count() const override { return count_; }
   std::size_t occupied_cells() const override {
     std::size_t cells = 0;
     for (const auto slot : blocks_.occupied()) {
@@ -120,9 +120,9 @@ class SolverOf final : public Solver {
  private:
   SolverOf(const SolverSettings& settings, std::size_t count)
       : settings_(settings),
+        count_(count),
         particles_({settings.dimension, settings.transfer == Transfer::quadratic_apic,
-                    settings.transfer == Transfer::linear_flip, is_thixotropic(settings.law)},
-                   count),
+                    settings.transfer == Transfer::linear_flip, is_thixotropic(settings.law)}),
         blocks_(settings.dimension, settings.bounds),
         instruction_set_(settings.instruction_set.empty() ? instruction_sets().front()
                                                           : settings.instruction_set),
@@ -269,7 +269,15 @@ class SolverOf final : public Solver {
         marks[i] = omp_get_wtime();
       };
       mark(0);
-      over_blocks(kernels_.particles_to_grid);
+      // A block's particles are put in order when they are needed next, for then they are in the cache
+      // anyway.
+      std::vector<T> taken;
+#pragma omp for schedule(dynamic, 1)
+      for (std::int64_t b = 0; b < blocks; ++b) {
+        const BlockView& block = views_[static_cast<std::size_t>(b)];
+        particles_.settle(blocks_.reordering(block.slot), taken);
+        kernels_.particles_to_grid(parameters_, view, block, arenas, nodes, workspace);
+      }
       mark(1);
       over_nodes(kernels_.update_nodes);
       if (contact_) {
@@ -325,22 +333,19 @@ class SolverOf final : public Solver {
 
   void relocate() {
     const double begin = omp_get_wtime();
-    ++steps_;
     if (moved_) {
-      blocks_.relocate(held_, threads_);
-      for (const auto& h : held_)
-        particles_.view().position[h.axis][h.particle] = h.upper ? highest_in_cell() : lowest_in_cell();
+      const auto& plan = blocks_.relocate();
+      for (const auto& h : plan.held)
+        particles_.view().position[h.axis][h.place] = h.upper ? highest_in_cell() : lowest_in_cell();
+      particles_.make_way(blocks_, plan, threads_);
       stale_ = true;
     }
-    if (steps_ % steps_between_rearrangements == 0 && blocks_.disorder() > disorder_worth_rearranging)
-      rearrange();
     times_.sorting += omp_get_wtime() - begin;
   }
 
-  void rearrange() {
-    particles_.permute(blocks_.sorted_order(), threads_);
-    blocks_.particles_rearranged();
-    stale_ = true;
+  /// Everything in its place, for those who look at particles between steps.
+  void settle() {
+    for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), taken_);
   }
 
   void fill(ParticleBatch& batch, const BlockView& block) const {
@@ -357,7 +362,7 @@ class SolverOf final : public Solver {
     for (int cell = 0; cell < cells; ++cell) {
       const int in_block[3] = {dim == 3 ? cell / 16 : cell / 4, dim == 3 ? cell / 4 % 4 : cell % 4, cell % 4};
       for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) {
-        const std::uint32_t p = block.list[i];
+        const std::size_t p = block.first + i;
         for (int a = 0; a < dim; ++a) {
           const auto axis = static_cast<std::size_t>(a);
           batch.position[axis][i] =
@@ -379,7 +384,7 @@ class SolverOf final : public Solver {
     }
   }
 
-  double shear_stress(std::uint32_t p) const {
+  double shear_stress(std::size_t p) const {
     const ParticleView<T>& v = particles_.view();
     const auto d = [&](int c) { return static_cast<double>(v.deviator[c][p]); };
     if (settings_.dimension == 2) return std::sqrt(Deviator<double, 2>{d(0), d(1), d(2)}.half_square());
@@ -387,6 +392,7 @@ class SolverOf final : public Solver {
   }
 
   SolverSettings settings_;
+  std::size_t count_ = 0;
   Particles<T> particles_;
   SparseBlocks blocks_;
   std::string instruction_set_;
@@ -405,10 +411,9 @@ class SolverOf final : public Solver {
   std::vector<Workspace<T>> workspaces_;
   std::vector<BlockView> views_;
   std::vector<NodeView> node_views_;
-  std::vector<SparseBlocks::Held> held_;
+  std::vector<T> taken_;
   bool stale_ = true;
   bool moved_ = false;
-  std::uint64_t steps_ = 0;
   StageTimes times_;
 };
 

@@ -25,6 +25,13 @@ CellIndex local_coordinates(int dimension, int local) {
                         : CellIndex{local / 4, local % 4, 0};
 }
 
+/// Places for a block with so many particles: a few of its neighbours' may come, and blocks begin on cache
+/// lines.
+std::uint32_t places_for(std::uint32_t count) {
+  constexpr std::uint32_t least_spare = 8, line = 16;
+  return (count + count / 16 + least_spare + line - 1) / line * line;
+}
+
 }  // namespace
 
 void SparseBlocks::wrap(std::array<std::int32_t, 3>& block) const {
@@ -65,7 +72,7 @@ std::array<std::int32_t, 3> SparseBlocks::shifted(const std::array<std::int32_t,
 void SparseBlocks::refresh_neighbours() {
   occupied_.clear();
   for (std::size_t i = 0; i < slots_.size(); ++i)
-    if (!slots_[i].list.empty()) occupied_.push_back(static_cast<std::uint32_t>(i));
+    if (slots_[i].count() > 0) occupied_.push_back(static_cast<std::uint32_t>(i));
   std::sort(occupied_.begin(), occupied_.end(),
             [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
   const int neighbours = 1 << axes();
@@ -78,18 +85,17 @@ void SparseBlocks::refresh_neighbours() {
     for (int delta = 0; delta < neighbours; ++delta) {
       const std::uint32_t from = slot_at(shifted(slot.block, delta, -1));
       slot.minus[static_cast<std::size_t>(delta)] =
-          from != no_slot && !slots_[from].list.empty() ? from : no_slot;
+          from != no_slot && slots_[from].count() > 0 ? from : no_slot;
     }
 }
 
-void SparseBlocks::build(const std::vector<CellIndex>& cells) {
+std::vector<std::uint32_t> SparseBlocks::build(const std::vector<CellIndex>& cells) {
   slots_.clear();
   slot_of_block_.clear();
   touched_.clear();
   const std::size_t count = cells.size();
-  owner_.resize(count);
-  local_.resize(count);
-  std::vector<std::vector<std::uint32_t>> members;
+  std::vector<std::uint32_t> slot_of(count);
+  std::vector<std::uint8_t> local(count);
   for (std::size_t p = 0; p < count; ++p) {
     std::array<std::int32_t, 3> block{};
     CellIndex inside{};
@@ -98,139 +104,233 @@ void SparseBlocks::build(const std::vector<CellIndex>& cells) {
       block[i] = floor_divide(cells[p][i]);
       inside[i] = cells[p][i] - block[i] * block_edge;
     }
-    const std::uint32_t slot = ensure_slot(block);
-    if (members.size() < slots_.size()) members.resize(slots_.size());
-    members[slot].push_back(static_cast<std::uint32_t>(p));
-    owner_[p] = slot;
-    local_[p] = static_cast<std::uint8_t>(local_index(dimension_, inside));
+    slot_of[p] = ensure_slot(block);
+    local[p] = static_cast<std::uint8_t>(local_index(dimension_, inside));
+    ++slots_[slot_of[p]].start[local[p] + 1u];
   }
   fullest_cell_ = 0;
-  for (std::size_t s = 0; s < members.size(); ++s) sort_list(static_cast<std::uint32_t>(s), members[s]);
-  for (const auto& slot : slots_)
-    for (std::size_t c = 0; c < 64; ++c)
-      fullest_cell_ = std::max<std::size_t>(fullest_cell_, slot.start[c + 1] - slot.start[c]);
-  refresh_neighbours();
-}
-
-void SparseBlocks::sort_list(std::uint32_t slot, const std::vector<std::uint32_t>& unsorted) {
-  Slot& s = slots_[slot];
-  s.start.fill(0);
-  for (const auto p : unsorted) ++s.start[local_[p] + 1u];
-  for (std::size_t c = 0; c < 64; ++c) s.start[c + 1] += s.start[c];
-  std::array<std::uint32_t, 64> next;
-  std::copy_n(s.start.begin(), 64, next.begin());
-  s.list.resize(unsorted.size());
-  for (const auto p : unsorted) s.list[next[local_[p]]++] = p;
-  s.contiguous = true;
-  for (std::size_t i = 1; i < s.list.size() && s.contiguous; ++i) s.contiguous = s.list[i] == s.list[0] + i;
-}
-
-void SparseBlocks::rebuild_list(std::uint32_t slot, std::vector<std::uint32_t>& scratch) {
-  Slot& s = slots_[slot];
-  scratch.clear();
-  for (const auto p : s.list)
-    if (owner_[p] == slot) scratch.push_back(p);
-  scratch.insert(scratch.end(), s.arrivals.begin(), s.arrivals.end());
-  s.arrivals.clear();
-  s.touched = false;
-  sort_list(slot, scratch);
-}
-
-std::vector<std::uint32_t> SparseBlocks::sorted_order() const {
-  std::vector<std::uint32_t> order;
-  order.reserve(owner_.size());
-  for (const auto slot : occupied_)
-    order.insert(order.end(), slots_[slot].list.begin(), slots_[slot].list.end());
-  return order;
-}
-
-void SparseBlocks::particles_rearranged() {
-  std::uint32_t next = 0;
-  std::vector<std::uint8_t> local(local_.size());
-  for (const auto slot : occupied_) {
-    Slot& s = slots_[slot];
-    for (auto& p : s.list) {
-      local[next] = local_[p];
-      p = next++;
+  for (auto& slot : slots_)
+    for (std::size_t c = 0; c < 64; ++c) {
+      fullest_cell_ = std::max<std::size_t>(fullest_cell_, slot.start[c + 1]);
+      slot.start[c + 1] += slot.start[c];
     }
-    s.contiguous = true;
-  }
-  local_ = std::move(local);
-  for (const auto slot : occupied_)
-    for (const auto p : slots_[slot].list) owner_[p] = slot;
+  refresh_neighbours();
+  lay_out();
+  std::vector<std::array<std::uint32_t, 64>> next(slots_.size());
+  for (std::size_t s = 0; s < slots_.size(); ++s) std::copy_n(slots_[s].start.begin(), 64, next[s].begin());
+  std::vector<std::uint32_t> places(count);
+  for (std::size_t p = 0; p < count; ++p) places[p] = slots_[slot_of[p]].first + next[slot_of[p]][local[p]]++;
+  return places;
 }
 
-void SparseBlocks::relocate(std::vector<Held>& held, int threads) {
-  held.clear();
+/// Gives every block its places anew, in the order of the blocks, with room for what comes to it now.
+void SparseBlocks::lay_out() {
+  std::vector<std::uint32_t> in_order;
+  for (std::size_t s = 0; s < slots_.size(); ++s) {
+    Slot& slot = slots_[s];
+    slot.room = 0;
+    if (std::max(slot.count(), slot.count_to_come) > 0) in_order.push_back(static_cast<std::uint32_t>(s));
+  }
+  std::sort(in_order.begin(), in_order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
+  relocation_.laid_out_anew = true;
+  relocation_.new_places.clear();
+  used_ = 0;
+  for (const auto s : in_order) {
+    Slot& slot = slots_[s];
+    const auto to = static_cast<std::uint32_t>(used_);
+    if (slot.count() > 0) relocation_.new_places.push_back({slot.first, to, slot.count()});
+    slot.first = to;
+    slot.room = places_for(std::max(slot.count(), slot.count_to_come));
+    used_ += slot.room;
+  }
+  constexpr std::size_t least_spare = 256;
+  room_ = used_ + used_ / 32 + least_spare;
+}
+
+/// Moves one block that has outgrown its places, or has none, behind all others; false where there is no
+/// room.
+bool SparseBlocks::move_to_the_end(Slot& slot) {
+  const std::uint32_t room = places_for(slot.count_to_come);
+  if (used_ + room > room_) return false;
+  const auto to = static_cast<std::uint32_t>(used_);
+  if (slot.count() > 0) relocation_.new_places.push_back({slot.first, to, slot.count()});
+  slot.first = to;
+  slot.room = room;
+  used_ += room;
+  return true;
+}
+
+std::vector<std::uint32_t> SparseBlocks::sorted_places() const {
+  std::vector<std::uint32_t> places;
+  for (const auto s : occupied_)
+    for (std::uint32_t i = 0; i < slots_[s].count(); ++i) places.push_back(slots_[s].first + i);
+  return places;
+}
+
+std::vector<CellIndex> SparseBlocks::sorted_cells() const {
+  std::vector<CellIndex> cells;
+  for (const auto s : occupied_)
+    for (int c = 0; c < 64; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      CellIndex cell = local_coordinates(dimension_, c);
+      for (std::size_t a = 0; a < 3; ++a) cell[a] += slots_[s].block[a] * block_edge;
+      cells.insert(cells.end(), slots_[s].start[i + 1] - slots_[s].start[i], cell);
+    }
+  return cells;
+}
+
+void SparseBlocks::touch(std::uint32_t slot) {
+  if (slots_[slot].touched) return;
+  slots_[slot].touched = true;
+  slots_[slot].count_to_come = slots_[slot].count();
+  touched_.push_back(slot);
+}
+
+void SparseBlocks::plan_mover(std::uint32_t slot, const Mover& mover) {
+  const auto& start = slots_[slot].start;
+  const int before =
+      static_cast<int>(std::upper_bound(start.begin(), start.end(), mover.index) - start.begin()) - 1;
+  CellIndex inside = local_coordinates(dimension_, before);
+  auto block = slots_[slot].block;
+  for (int a = 0; a < axes(); ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    if (mover.shift[a] == 0) continue;
+    const std::int32_t cell = block[i] * block_edge + inside[i] + mover.shift[a];
+    const AxisBounds& b = bounds_[i];
+    if (!b.periodic && ((b.lower != PlaneWall::none && cell < b.lower_cell) ||
+                        (b.upper != PlaneWall::none && cell >= b.upper_cell))) {
+      relocation_.held.push_back({slots_[slot].first + mover.index, a, mover.shift[a] > 0});
+      continue;
+    }
+    block[i] = floor_divide(cell);
+    inside[i] = cell - block[i] * block_edge;
+  }
+  wrap(block);
+  const int after = local_index(dimension_, inside);
+  const bool departs = block != slots_[slot].block;
+  if (!departs && after == before) return;
+  touch(slot);
+  slots_[slot].changes.push_back({mover.index, departs ? no_cell : static_cast<std::uint8_t>(after)});
+  if (!departs) return;
+  --slots_[slot].count_to_come;
+  const std::uint32_t to = ensure_slot(block);
+  if (slots_[to].count() == 0) occupancy_changed_ = true;
+  touch(to);
+  ++slots_[to].count_to_come;
+  slots_[to].arrivals.push_back(
+      {static_cast<std::uint32_t>(relocation_.departing.size()), static_cast<std::uint8_t>(after)});
+  relocation_.departing.push_back(slots_[slot].first + mover.index);
+}
+
+const SparseBlocks::Relocation& SparseBlocks::relocate() {
+  relocation_ = {std::move(relocation_.held), std::move(relocation_.departing),
+                 std::move(relocation_.new_places), false};
+  relocation_.held.clear();
+  relocation_.departing.clear();
+  relocation_.new_places.clear();
   touched_.clear();
-  bool occupancy_changed = false;
-  const auto touch = [&](std::uint32_t slot) {
-    if (slots_[slot].touched) return;
-    slots_[slot].touched = true;
-    touched_.push_back(slot);
-  };
+  occupancy_changed_ = false;
   for (const auto slot : occupied_) {
     const std::uint32_t movers = slots_[slot].sums.movers;
-    for (std::uint32_t m = 0; m < movers; ++m) {
-      const Mover mover = slots_[slot].movers[m];
-      CellIndex inside = local_coordinates(dimension_, local_[mover.particle]);
-      auto block = slots_[slot].block;
-      for (int a = 0; a < axes(); ++a) {
-        const auto i = static_cast<std::size_t>(a);
-        if (mover.shift[a] == 0) continue;
-        const std::int32_t cell = block[i] * block_edge + inside[i] + mover.shift[a];
-        const AxisBounds& b = bounds_[i];
-        if (!b.periodic && ((b.lower != PlaneWall::none && cell < b.lower_cell) ||
-                            (b.upper != PlaneWall::none && cell >= b.upper_cell))) {
-          held.push_back({mover.particle, a, mover.shift[a] > 0});
-          continue;
-        }
-        block[i] = floor_divide(cell);
-        inside[i] = cell - block[i] * block_edge;
-      }
-      wrap(block);
-      local_[mover.particle] = static_cast<std::uint8_t>(local_index(dimension_, inside));
-      touch(slot);
-      if (block == slots_[slot].block) continue;
-      const std::uint32_t to = ensure_slot(block);
-      owner_[mover.particle] = to;
-      slots_[to].arrivals.push_back(mover.particle);
-      if (slots_[to].list.empty()) occupancy_changed = true;
-      touch(to);
-    }
+    for (std::uint32_t m = 0; m < movers; ++m) plan_mover(slot, slots_[slot].movers[m]);
   }
-  const auto count = static_cast<std::int64_t>(touched_.size());
-#pragma omp parallel num_threads(threads) if (count > 8 * threads)
-  {
-    std::vector<std::uint32_t> scratch;
-#pragma omp for schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) rebuild_list(touched_[static_cast<std::size_t>(i)], scratch);
+  const auto fits = [&](std::uint32_t s) {
+    return slots_[s].count_to_come <= slots_[s].room || move_to_the_end(slots_[s]);
+  };
+  if (!std::all_of(touched_.begin(), touched_.end(), fits)) {
+    // What has been moved to the end already has not moved yet.
+    for (const auto& moved : relocation_.new_places)
+      for (const auto s : touched_)
+        if (slots_[s].first == moved.to) slots_[s].first = moved.from;
+    lay_out();
   }
   for (const auto slot : touched_) {
-    const Slot& s = slots_[slot];
-    if (s.list.empty()) occupancy_changed = true;
+    Slot& s = slots_[slot];
+    plan_reordering(s);
+    s.touched = false;
+    if (s.count() == 0) occupancy_changed_ = true;
     for (std::size_t c = 0; c < 64; ++c)
       fullest_cell_ = std::max<std::size_t>(fullest_cell_, s.start[c + 1] - s.start[c]);
   }
-  if (occupancy_changed) refresh_neighbours();
+  if (occupancy_changed_) refresh_neighbours();
+  return relocation_;
 }
 
-double SparseBlocks::disorder() const {
-  std::size_t scattered = 0;
-  for (const auto slot : occupied_)
-    if (!slots_[slot].contiguous) scattered += slots_[slot].list.size();
-  return owner_.empty() ? 0.0 : static_cast<double>(scattered) / static_cast<double>(owner_.size());
+void SparseBlocks::add_piece(Reordering& out, std::uint32_t from, std::uint32_t to, std::uint32_t count) {
+  if (count == 0 || from == to) return;
+  if (!out.pieces.empty()) {
+    Piece& last = out.pieces.back();
+    if (last.from + last.count == from && last.to + last.count == to) {
+      last.count += count;
+      return;
+    }
+  }
+  out.pieces.push_back({from, to, count});
+}
+
+/// A cell takes its particles in the order of where they were: those from cells before it, those that stay,
+/// those from cells after it; then those from other blocks.
+void SparseBlocks::plan_reordering(Slot& s) {
+  constexpr std::uint32_t none = ~0u;
+  const auto before = s.start;
+  std::array<std::uint32_t, 64> size{}, first_change, first_arrival;
+  first_change.fill(none);
+  first_arrival.fill(none);
+  for (std::size_t c = 0; c < 64; ++c) size[c] = before[c + 1] - before[c];
+  // Backwards, so that every cell's list of what comes to it is in order.
+  links_.resize(s.changes.size() + s.arrivals.size());
+  const auto list = [&](std::array<std::uint32_t, 64>& heads, std::size_t i, std::size_t cell,
+                        std::size_t link) {
+    links_[link] = heads[cell];
+    heads[cell] = static_cast<std::uint32_t>(i);
+    ++size[cell];
+  };
+  std::size_t cell = 63;
+  for (std::size_t i = s.changes.size(); i-- > 0;) {
+    while (before[cell] > s.changes[i].from) --cell;
+    --size[cell];
+    if (s.changes[i].cell != no_cell) list(first_change, i, s.changes[i].cell, i);
+  }
+  for (std::size_t i = s.arrivals.size(); i-- > 0;)
+    list(first_arrival, i, s.arrivals[i].cell, s.changes.size() + i);
+  for (std::size_t c = 0; c < 64; ++c) s.start[c + 1] = s.start[c] + size[c];
+
+  Reordering& out = s.reordering;
+  out.first = s.first;
+  out.pieces.clear();
+  out.arrivals.clear();
+  std::size_t leaver = 0;
+  for (std::size_t c = 0; c < 64; ++c) {
+    std::uint32_t to = s.start[c], incoming = first_change[c];
+    for (; incoming != none && s.changes[incoming].from < before[c]; incoming = links_[incoming])
+      add_piece(out, s.changes[incoming].from, to++, 1);
+    std::uint32_t from = before[c];
+    for (; leaver < s.changes.size() && s.changes[leaver].from < before[c + 1]; ++leaver) {
+      add_piece(out, from, to, s.changes[leaver].from - from);
+      to += s.changes[leaver].from - from;
+      from = s.changes[leaver].from + 1;
+    }
+    add_piece(out, from, to, before[c + 1] - from);
+    to += before[c + 1] - from;
+    for (; incoming != none; incoming = links_[incoming]) add_piece(out, s.changes[incoming].from, to++, 1);
+    for (std::uint32_t i = first_arrival[c]; i != none; i = links_[s.changes.size() + i]) {
+      out.pieces.push_back({0, to, 1});
+      out.arrivals.push_back({s.arrivals[i].from, to++});
+    }
+  }
+  s.changes.clear();
+  s.arrivals.clear();
 }
 
 BlockView SparseBlocks::view(std::uint32_t slot) {
   Slot& s = slots_[slot];
-  if (s.movers.size() < s.list.size()) s.movers.resize(s.list.size() + s.list.size() / 4);
+  if (s.movers.size() < s.count()) s.movers.resize(places_for(s.count()));
   BlockView v;
   for (int a = 0; a < axes(); ++a) v.origin[a] = s.block[static_cast<std::size_t>(a)] * block_edge;
   v.slot = slot;
-  v.list = s.list.data();
+  v.first = s.first;
   v.start = s.start.data();
-  v.contiguous = s.contiguous;
   v.plus = s.plus.data();
   v.movers = s.movers.data();
   v.sums = &s.sums;
@@ -239,17 +339,13 @@ BlockView SparseBlocks::view(std::uint32_t slot) {
 
 NodeView SparseBlocks::node_view(std::uint32_t slot) const { return {slot, slots_[slot].minus.data()}; }
 
-CellIndex SparseBlocks::cell_of(std::uint32_t particle) const {
-  CellIndex cell = local_coordinates(dimension_, local_[particle]);
-  const auto& block = slots_[owner_[particle]].block;
-  for (std::size_t a = 0; a < 3; ++a) cell[a] += block[a] * block_edge;
-  return cell;
-}
-
 std::size_t SparseBlocks::bytes() const {
-  std::size_t total = owner_.capacity() * sizeof(std::uint32_t) + local_.capacity();
+  std::size_t total = 0;
   for (const auto& s : slots_)
-    total += sizeof(Slot) + s.list.capacity() * sizeof(std::uint32_t) + s.movers.capacity() * sizeof(Mover);
+    total += sizeof(Slot) + s.movers.capacity() * sizeof(Mover) +
+             (s.changes.capacity() + s.arrivals.capacity()) * sizeof(Change) +
+             s.reordering.pieces.capacity() * sizeof(Piece) +
+             s.reordering.arrivals.capacity() * sizeof(Arrival);
   return total;
 }
 

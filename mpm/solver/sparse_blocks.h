@@ -12,35 +12,64 @@ namespace flowrest::mpm {
 using CellIndex = std::array<std::int32_t, 3>;  ///< global cell coordinates; the third is 0 in two dimensions
 
 /// The occupied blocks of the background grid, which particles lie in which of their cells, and the
-/// neighbourhoods. Only blocks that hold particles, and those their nodes reach into, exist. Everything that
-/// follows from it (the order of particles within a cell, of blocks in sums) depends on the history of the
-/// motion alone, not on threads or on where a particle lies in memory.
+/// neighbourhoods. Only blocks that hold particles, and those their nodes reach into, exist. The particles of
+/// a block lie side by side in their arrays, in the order of its cells, with some room behind them.
+/// Everything that matters to an answer (the order of particles within a cell, of blocks in sums) depends on
+/// the history of the motion alone, not on threads or on where a block lies in memory.
 class SparseBlocks {
  public:
   SparseBlocks() = default;
   SparseBlocks(int dimension, const std::array<AxisBounds, 3>& bounds)
       : dimension_(dimension), bounds_(bounds) {}
 
-  /// Builds everything anew from each particle's cell; within a cell, particles keep their order.
-  void build(const std::vector<CellIndex>& cells);
+  /// Builds everything anew from each particle's cell; within a cell, particles keep their order. Returns
+  /// each particle's place in the arrays.
+  std::vector<std::uint32_t> build(const std::vector<CellIndex>& cells);
 
-  /// Particles in the order of (block, cell, place in the cell).
-  std::vector<std::uint32_t> sorted_order() const;
-  /// To be called when particles have been rearranged by sorted_order().
-  void particles_rearranged();
+  /// Places that the particles' arrays need to have.
+  std::size_t room() const { return room_; }
+  /// Particles' places in the order of (block, cell, place in the cell).
+  std::vector<std::uint32_t> sorted_places() const;
+  /// Their cells, in the same order.
+  std::vector<CellIndex> sorted_cells() const;
 
-  /// Moves the particles that the last step's kernels reported (in the blocks' mover lists) to their new
-  /// cells. A particle that would pass a plane wall stays in its cell: those are reported as (particle, axis,
-  /// side) in `held`.
+  /// Relocation of the particles that the last step's kernels reported in the blocks' mover lists. All that
+  /// is asked of the blocks afterwards is as if everything had moved already; the arrays follow
+  /// (Particles::make_way, then Particles::settle for every block before its particles are looked at).
+  ///
+  /// A particle that would pass a plane wall stays in its cell: it is in `held`, at the place where it is
+  /// before anything moves. `departing` particles are to be set aside, in this order; blocks that have
+  /// outgrown their places move to `new_places`, all of them into new arrays of room() where `laid_out_anew`.
   struct Held {
-    std::uint32_t particle;
+    std::uint32_t place;
     int axis;
     bool upper;
   };
-  void relocate(std::vector<Held>& held, int threads);
+  struct NewPlace {
+    std::uint32_t from, to, count;
+  };
+  struct Relocation {
+    std::vector<Held> held;
+    std::vector<std::uint32_t> departing;  ///< places
+    std::vector<NewPlace> new_places;
+    bool laid_out_anew = false;
+  };
+  const Relocation& relocate();
 
-  /// Share of the particles that lie in blocks whose list is not contiguous in memory.
-  double disorder() const;
+  /// What the arrays still owe to a block, by index in it: `pieces` that change their place, in the order of
+  /// where they go, with a hole for each of the `arrivals`, which are among those set aside.
+  struct Piece {
+    std::uint32_t from, to, count;
+  };
+  struct Arrival {
+    std::uint32_t departed, to;
+  };
+  struct Reordering {
+    std::uint32_t first = 0;
+    std::vector<Piece> pieces;
+    std::vector<Arrival> arrivals;
+  };
+  Reordering& reordering(std::uint32_t slot) { return slots_[slot].reordering; }
 
   std::size_t slot_count() const { return slots_.size(); }
   const std::vector<std::uint32_t>& occupied() const { return occupied_; }
@@ -56,29 +85,40 @@ class SparseBlocks {
     return slot_at(block);
   }
 
-  /// Global cell of a particle.
-  CellIndex cell_of(std::uint32_t particle) const;
   std::size_t bytes() const;
 
  private:
+  /// A particle that changes cells within a block (from its index), or arrives (from the departed), or
+  /// departs (to no cell).
+  struct Change {
+    std::uint32_t from;
+    std::uint8_t cell;
+  };
+  static constexpr std::uint8_t no_cell = 0xff;
   struct Slot {
     std::array<std::int32_t, 3> block{};  ///< block coordinates
-    std::vector<std::uint32_t> list;
+    std::uint32_t first = 0, room = 0;    ///< places
     std::array<std::uint32_t, 65> start{};
-    bool contiguous = false;
     bool touched = false;
+    std::uint32_t count_to_come = 0;  ///< particles after the relocation that is planned
     std::vector<Mover> movers;
-    std::vector<std::uint32_t> arrivals;
+    std::vector<Change> changes, arrivals;
+    Reordering reordering;
     BlockSums sums;
     std::array<std::uint32_t, 8> plus{}, minus{};
+    std::uint32_t count() const { return start[64]; }
   };
 
   std::uint32_t slot_at(const std::array<std::int32_t, 3>& block) const;
   std::uint32_t ensure_slot(const std::array<std::int32_t, 3>& block);
   std::array<std::int32_t, 3> shifted(const std::array<std::int32_t, 3>& block, int delta, int sign) const;
   void wrap(std::array<std::int32_t, 3>& block) const;
-  void sort_list(std::uint32_t slot, const std::vector<std::uint32_t>& unsorted);
-  void rebuild_list(std::uint32_t slot, std::vector<std::uint32_t>& scratch);
+  void touch(std::uint32_t slot);
+  void plan_mover(std::uint32_t slot, const Mover&);
+  void plan_reordering(Slot&);
+  static void add_piece(Reordering&, std::uint32_t from, std::uint32_t to, std::uint32_t count);
+  void lay_out();
+  bool move_to_the_end(Slot&);
   void refresh_neighbours();
   int axes() const { return dimension_; }
 
@@ -87,9 +127,11 @@ class SparseBlocks {
   std::vector<Slot> slots_;
   std::unordered_map<std::uint64_t, std::uint32_t> slot_of_block_;
   std::vector<std::uint32_t> occupied_;  ///< ascending in block coordinates
-  std::vector<std::uint32_t> owner_;     ///< slot of each particle
-  std::vector<std::uint8_t> local_;      ///< cell within the block of each particle
   std::vector<std::uint32_t> touched_;
+  Relocation relocation_;
+  std::vector<std::uint32_t> links_;  ///< from one change of a block to the next that goes to the same cell
+  bool occupancy_changed_ = false;
+  std::size_t room_ = 0, used_ = 0;  ///< places of the arrays, and up to where they are given to blocks
   std::size_t fullest_cell_ = 0;
 };
 

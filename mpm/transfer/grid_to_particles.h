@@ -108,9 +108,8 @@ void update_stress(const StepParameters<T>& step, const ParticleView<T>& particl
   constexpr int components = Deviator<T, Dim>::components;
   const int count = tile.count;
   for (int c = 0; c < components; ++c) s.deviator[c] = tile.open(particles.deviator[c]);
-  s.pressure = tile.fresh();
-  const bool thixotropic = particles.lambda != nullptr;
-  s.lambda = thixotropic ? tile.open(particles.lambda) : nullptr;
+  s.pressure = tile.open(particles.pressure);
+  s.lambda = particles.lambda ? tile.open(particles.lambda) : nullptr;
   s.shear = tile.fresh();
   s.trial = tile.fresh();
   s.stress = tile.fresh();
@@ -131,11 +130,6 @@ void update_stress(const StepParameters<T>& step, const ParticleView<T>& particl
     dissipated += mass[q] * s.ratio[q] * s.stress[q] * s.rate[q];
     largest_pressure = largest_pressure > s.pressure[q] ? largest_pressure : s.pressure[q];
   }
-  tile.close(particles.volume_ratio, s.ratio);
-  for (int c = 0; c < components; ++c) tile.close(particles.deviator[c], s.deviator[c]);
-  tile.close(particles.pressure, s.pressure);
-  tile.close(particles.rate, s.rate);
-  if (thixotropic) tile.close(particles.lambda, s.lambda);
   BlockSums& sums = *tile.block.sums;
   sums.dissipated += static_cast<double>(dissipated) * static_cast<double>(step.step / step.density);
   sums.largest_pressure = maximum(sums.largest_pressure, static_cast<double>(largest_pressure));
@@ -146,7 +140,7 @@ template <class T, int Dim, class Shape>
 void note_mover(Tile<T, Dim>& tile, T* const* x, int q) {
   BlockSums& sums = *tile.block.sums;
   constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
-  Mover mover{tile.block.list[tile.first + q], {0, 0, 0}};
+  Mover mover{static_cast<std::uint32_t>(tile.first + q), {0, 0, 0}};
   for (int a = 0; a < Dim; ++a) {
     T& to = x[a][q];
     if (to >= T(0) && to < T(1)) continue;
@@ -161,8 +155,8 @@ void note_mover(Tile<T, Dim>& tile, T* const* x, int q) {
 
 /// Moves a tile's particles with the velocities `advection`.
 template <class T, int Dim, class Shape>
-void move_particles(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
-                    T* const* x, const T* const* advection, const T* mass) {
+void move_particles(const StepParameters<T>& step, Tile<T, Dim>& tile, T* const* x, const T* const* advection,
+                    const T* mass) {
   const int count = tile.count;
   // Counts axes along which a particle left its cell; a value that is not finite fails every comparison.
   T* left = tile.fresh();
@@ -185,7 +179,6 @@ void move_particles(const StepParameters<T>& step, const ParticleView<T>& partic
   if (tile.block.near_wall) keep_out_of_walls<T, Dim>(step, tile, x, left);
   for (int q = 0; q < count; ++q)
     if (left[q] != T(0)) note_mover<T, Dim, Shape>(tile, x, q);
-  for (int a = 0; a < Dim; ++a) tile.close(particles.position[a], x[a]);
   BlockSums& sums = *tile.block.sums;
   sums.momentum += static_cast<double>(momentum);
   sums.largest_speed_squared = maximum(sums.largest_speed_squared, static_cast<double>(largest_speed));
@@ -202,7 +195,7 @@ void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& parti
   s.rate = tile.open(particles.rate);
   make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, filling, s);
   update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
-  move_particles<T, Dim, Shape>(step, particles, tile, x, advection, mass);
+  move_particles<T, Dim, Shape>(step, tile, x, advection, mass);
 }
 
 /// Whether a step keeps anything of what particles brought, see relax.
@@ -249,11 +242,9 @@ void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles,
     }
     const auto carry_on = [&](T* own, T* gathered) {
       if constexpr (kept) {
-        T* values = tile.open(own);
-        relax(step.keep, gathered, values, tile.count);
-        tile.close(own, values);
+        relax(step.keep, gathered, tile.open(own), tile.count);
       } else {
-        tile.close(own, gathered);
+        tile.write(own, gathered);
       }
     };
     for (int c = 0; c < Dim; ++c) {
@@ -306,8 +297,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     Momentum* momentum = reinterpret_cast<Momentum*>(tile.memory + tile.capacity * tile.used);
     for (int c = 0; c < Dim; ++c) {
       relax(step.keep, increment.value[c], v[c], tile.count);
-      tile.close(particles.velocity[c], v[c]);
-      tile.close(particles.advection[c], motion.value[c]);
+      tile.write(particles.advection[c], motion.value[c]);
     }
     for (int q = 0; q < tile.count; ++q) {
       momentum[q].value[0] = mass[q];

@@ -128,6 +128,15 @@ void scatter(T* arena_cell, const Source<T, Dim, Terms, Values>* source, const W
     }
 }
 
+template <class T>
+FLOWREST_INLINE void set_rows(Record<T> (&rows)[4], const Record<T>& a, const Record<T>& b,
+                              const Record<T>& c, const Record<T>& d) {
+  rows[0] = a;
+  rows[1] = b;
+  rows[2] = c;
+  rows[3] = d;
+}
+
 /// Mass, momentum, volume and the impulse of the step's forces of one block's particles, into that block's
 /// arena: per node (mass, momentum) and (filling, impulse).
 template <class T, int Dim, bool Axisymmetric, class Shape>
@@ -189,52 +198,65 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       }
 
     // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
-    // workspace's rest, and what only they need is read from the particles' arrays straight away.
+    // workspace's rest.
     Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
     static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 40 <= workspace_arrays);
     const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
     const T per_cell_volume = T(1) / (circle * (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell);
-    const std::uint32_t* list = block.list + tile.first;
-    for (int q = 0; q < count; ++q) {
-      const std::uint32_t id = list[q];
-      Deviator<T, Dim> dev;
-      if constexpr (Dim == 2) {
-        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id]};
-      } else {
-        dev = {particles.deviator[0][id], particles.deviator[1][id], particles.deviator[2][id],
-               particles.deviator[3][id], particles.deviator[4][id]};
-      }
-      const T p = centroid ? T(0) : pressure[q];
-      const T m = mass[q];
-      Record<T> forcing = {volume[q] * per_cell_volume, T(0), T(0), T(0)};
-      if constexpr (Axisymmetric) {
-        forcing[0] *= per_radius[q];
-        forcing[1] = -volume[q] * dt * (dev.zz() - p) * per_radius[q];
-      }
-      Sources& source = sources[q];
-      record_at(source.value) = Record<T>{m, m * particles.velocity[0][id], m * particles.velocity[1][id],
-                                          Dim == 3 ? m * particles.velocity[Dim - 1][id] : T(0)};
-      record_at(source.value + record) = forcing;
-      Record<T> stress[Dim];
+    using R = Record<T>;
+    const T *v[Dim], *deviator[Deviator<T, Dim>::components], *own[Dim][Dim];
+    for (int c = 0; c < Dim; ++c) v[c] = tile.open(particles.velocity[c]);
+    for (int c = 0; c < Deviator<T, Dim>::components; ++c) deviator[c] = tile.open(particles.deviator[c]);
+    for (int c = 0; c < Dim; ++c)
+      for (int a = 0; a < Dim; ++a) own[c][a] = affine ? tile.open(particles.affine[c * Dim + a]) : nullptr;
+    // Four particles at a time; those past the tile's end are rubbish that nothing reads.
+    for (int q = 0; q < count; q += record) {
+      const R none = {}, m = record_at(mass + q), volumes = record_at(volume + q);
+      const R p = centroid ? none : record_at(pressure + q);
+      const R xx = record_at(deviator[0] + q), yy = record_at(deviator[1] + q),
+              xy = record_at(deviator[2] + q);
+      R value[4] = {m, m * record_at(v[0] + q), m * record_at(v[1] + q), none};
+      R forcing[4] = {volumes * per_cell_volume, none, none, none};
+      R stress[Dim][4];
       if constexpr (Dim == 3) {
-        stress[0] = Record<T>{T(0), dev.xx - p, dev.xy, dev.xz};
-        stress[1] = Record<T>{T(0), dev.xy, dev.yy - p, dev.yz};
-        stress[2] = Record<T>{T(0), dev.xz, dev.yz, dev.zz() - p};
+        const R xz = record_at(deviator[3] + q), yz = record_at(deviator[4] + q);
+        value[3] = m * record_at(v[2] + q);
+        set_rows<T>(stress[0], none, xx - p, xy, xz);
+        set_rows<T>(stress[1], none, xy, yy - p, yz);
+        set_rows<T>(stress[2], none, xz, yz, -(xx + yy) - p);
       } else {
-        stress[0] = Record<T>{T(0), dev.xx - p, dev.xy, T(0)};
-        stress[1] = Record<T>{T(0), dev.xy, dev.yy - p, T(0)};
+        set_rows<T>(stress[0], none, xx - p, xy, none);
+        set_rows<T>(stress[1], none, xy, yy - p, none);
+      }
+      if constexpr (Axisymmetric) {
+        const R per_radii = record_at(per_radius + q);
+        forcing[0] *= per_radii;
+        forcing[1] = volumes * dt * (xx + yy + p) * per_radii;  // of the hoop stress
+      }
+      transpose<T>(value);
+      transpose<T>(forcing);
+      for (int n = 0; n < record; ++n) {
+        record_at(sources[q + n].value) = value[n];
+        record_at(sources[q + n].value + record) = forcing[n];
       }
 #pragma GCC unroll 3
       for (int a = 0; a < Dim; ++a) {
-        Record<T> own = {};
-        if constexpr (affine)
-          own = Record<T>{T(0), particles.affine[a][id], particles.affine[Dim + a][id],
-                          Dim == 3 ? particles.affine[(Dim - 1) * Dim + a][id] : T(0)};
-#pragma GCC unroll 2
-        for (int side = 0; side < 2; ++side) {
-          record_at(source.term[a][side] + record) = push[a][side][q] * stress[a];
-          record_at(source.term[a][side]) = affine ? slant[a][side][q] * own : own;
+        transpose<T>(stress[a]);
+        R slants[4] = {none, none, none, none};
+        if constexpr (affine) {
+          slants[1] = record_at(own[0][a] + q);
+          slants[2] = record_at(own[1][a] + q);
+          if constexpr (Dim == 3) slants[3] = record_at(own[2][a] + q);
+          transpose<T>(slants);
         }
+#pragma GCC unroll 2
+        for (int side = 0; side < 2; ++side)
+#pragma GCC unroll 4
+          for (int n = 0; n < record; ++n) {
+            T* const term = sources[q + n].term[a][side];
+            record_at(term + record) = push[a][side][q + n] * stress[a][n];
+            record_at(term) = affine ? slant[a][side][q + n] * slants[n] : none;
+          }
       }
     }
 

@@ -20,7 +20,7 @@ struct Tile {
   int capacity;
   int used = 0;
   int first_cell = 0, last_cell = 0;  ///< [first, last) of the block
-  int first = 0, count = 0;           ///< in the block's list
+  int first = 0, count = 0;           ///< of the block's particles
 
   Tile(const BlockView& b, const Workspace<T>& w) : block(b), memory(w.memory), capacity(w.capacity) {}
 
@@ -43,23 +43,11 @@ struct Tile {
   int cell_first(int cell) const { return static_cast<int>(block.start[cell]) - first; }
   int cell_count(int cell) const { return static_cast<int>(block.start[cell + 1] - block.start[cell]); }
 
-  /// The tile's values of a particle array: in place where the list is contiguous, else copied.
-  T* open(T* array) {
-    const std::uint32_t* list = block.list + first;
-    if (block.contiguous) return array + list[0];
-    T* copy = fresh();
-    for (int q = 0; q < count; ++q) copy[q] = array[list[q]];
-    return copy;
-  }
-  void close(T* array, const T* values) {
-    if (block.contiguous && values == array + block.list[first]) return;
-    const std::uint32_t* list = block.list + first;
-    if (block.contiguous) {
-      T* to = array + list[0];
-      for (int q = 0; q < count; ++q) to[q] = values[q];
-    } else {
-      for (int q = 0; q < count; ++q) array[list[q]] = values[q];
-    }
+  /// The tile's values of a particle array.
+  T* open(T* array) const { return array + block.first + first; }
+  void write(T* array, const T* values) const {
+    T* to = open(array);
+    for (int q = 0; q < count; ++q) to[q] = values[q];
   }
 };
 

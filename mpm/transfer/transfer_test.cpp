@@ -21,22 +21,24 @@ template <class T>
 GridSums to_grid(const SolverSettings& s, const std::vector<Seed>& seeds, const std::string& set, double dt,
                  const std::array<double, 3>& acceleration) {
   const bool flip = s.transfer == Transfer::linear_flip;
-  Particles<T> particles({s.dimension, !flip, flip, false}, seeds.size());
-  const ParticleView<T>& v = particles.view();
+  Particles<T> particles({s.dimension, !flip, flip, false});
   std::vector<CellIndex> cells;
-  for (std::size_t p = 0; p < seeds.size(); ++p) {
-    cells.push_back(seeds[p].cell);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(s.dimension); ++a) {
-      v.position[a][p] = static_cast<T>(seeds[p].position[a]);
-      v.velocity[a][p] = static_cast<T>(seeds[p].velocity[a]);
-    }
-    v.mass[p] = static_cast<T>(seeds[p].volume * s.density);
-    v.volume_ratio[p] = T(1);
-    v.deviator[0][p] = T(100);
-    v.pressure[p] = T(300);
-  }
+  for (const auto& seed : seeds) cells.push_back(seed.cell);
   SparseBlocks blocks(s.dimension, s.bounds);
-  blocks.build(cells);
+  const auto places = blocks.build(cells);
+  particles.make_room(blocks.room());
+  const ParticleView<T>& v = particles.view();
+  for (std::size_t p = 0; p < seeds.size(); ++p) {
+    const std::uint32_t at = places[p];
+    for (std::size_t a = 0; a < static_cast<std::size_t>(s.dimension); ++a) {
+      v.position[a][at] = static_cast<T>(seeds[p].position[a]);
+      v.velocity[a][at] = static_cast<T>(seeds[p].velocity[a]);
+    }
+    v.mass[at] = static_cast<T>(seeds[p].volume * s.density);
+    v.volume_ratio[at] = T(1);
+    v.deviator[0][at] = T(100);
+    v.pressure[at] = T(300);
+  }
   const Kernels<T> stages = kernels<T>(set, s.dimension, s.axisymmetric, s.transfer);
   const std::size_t values = node_values;
   AlignedArray<T> arenas(blocks.slot_count() * static_cast<std::size_t>(power(arena_edge, s.dimension)) *
