@@ -6,7 +6,6 @@
 #include <exception>
 
 #include "cli/run_command.h"
-#include "cli/validate_command.h"
 #include "mpm/commands.h"
 #include "runs/run_directory.h"
 #include "scenes/commands.h"
@@ -46,7 +45,6 @@ int main(int argc, char** argv) {
   studies::add_commands(app);
 #endif
   cli::add_run_command(app);
-  cli::add_validate_command(app);
   try {
     app.parse(argc, argv);
     return 0;

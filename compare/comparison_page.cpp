@@ -120,6 +120,14 @@ Chapter further_chapter(const Comparison& comparison) {
         curve.x.push_back(t);
         curve.y.push_back(gauge.shown * series.at(t));
       }
+      // What is at rest stays as it is, but for its flocs, which go on growing.
+      if (const RunView& view = comparison.runs[i];
+          view.held && !curve.x.empty() && curve.x.back() < comparison.end) {
+        const double growth = gauge.column == "flocculation_mean" ? flocculation_at_rest(view) : 0.0;
+        curve.held_from = curve.x.back();
+        curve.y.push_back(curve.y.back() + growth * (comparison.end - curve.x.back()));
+        curve.x.push_back(comparison.end);
+      }
       plot.curves.push_back(std::move(curve));
     }
     // A height that never leaves zero says nothing.

@@ -119,6 +119,12 @@ Series column(const runs::Run& run, const std::string& name, double scale) {
   return series;
 }
 
+double flocculation_at_rest(const RunView& view) {
+  const auto rate = setting(view, "/thixotropy/flocculation_rate"),
+             yield_stress = setting(view, "/material/yield_stress");
+  return rate && yield_stress && *yield_stress > 0.0 ? *rate / *yield_stress : 0.0;
+}
+
 RunView view_of(runs::Run run, scenes::Kind kind) {
   RunView view;
   view.run = std::move(run);

@@ -19,6 +19,10 @@ std::optional<double> setting(const RunView&, const std::string& key);
 /// A history column as a series, without samples that are not numbers.
 Series column(const runs::Run&, const std::string& name, double scale = 1.0);
 
+/// A_thix / tau0: what the flocculation state gains in a second where nothing shears it (Yu et al. 2026, Eq.
+/// 11), 1/s; 0 without thixotropy.
+double flocculation_at_rest(const RunView&);
+
 /// The run as the comparison sees it: named, with its gauge and its trouble.
 RunView view_of(runs::Run, scenes::Kind);
 

@@ -11,6 +11,7 @@
 #include "scenes/cost.h"
 #include "studies/accuracy.h"
 #include "studies/results.h"
+#include "studies/validation/validation.h"
 #include "studies/verification/verification.h"
 #include "studies/workflow.h"
 
@@ -176,6 +177,7 @@ void add_verify(CLI::App& app) {
 void add_commands(CLI::App& app) {
   add_study(app);
   add_verify(app);
+  validation::add_command(app);
   add_job(app);
 }
 

@@ -17,13 +17,6 @@ using scenes::SceneError;
 /// More runs than anybody will wait for.
 constexpr std::size_t most_points = 20000;
 
-/// FNV-1a, 64 bits: the same on every machine and in every version.
-std::uint64_t mark_of(const std::string& text) {
-  std::uint64_t mark = 14695981039346656037ull;
-  for (const char c : text) mark = (mark ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return mark;
-}
-
 std::string without_quotes(const std::string& toml) {
   const bool quoted = toml.size() >= 2 && toml.front() == '"' && toml.back() == '"';
   return quoted ? toml.substr(1, toml.size() - 2) : toml;
@@ -58,7 +51,7 @@ std::string id_of(const Point& point) {
     for (const Setting& s : point.varied) resolved += s.text() + ";";
     resolved += point.refused;
   }
-  return fmt::format("{}-{:012x}", name, mark_of(resolved) & 0xffffffffffffull);
+  return fmt::format("{}-{}", name, name_mark(resolved));
 }
 
 std::string label_of(const Point& point) {
@@ -235,6 +228,13 @@ void check_exact(const Study& study) {
 }
 
 }  // namespace
+
+std::string name_mark(const std::string& text) {
+  // FNV-1a, 64 bits.
+  std::uint64_t mark = 14695981039346656037ull;
+  for (const char c : text) mark = (mark ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return fmt::format("{:012x}", mark & 0xffffffffffffull);
+}
 
 std::string to_string(Solver solver) { return solver == Solver::mpm ? "mpm" : "foam"; }
 

@@ -123,6 +123,10 @@ struct Point {
 };
 std::string to_string(Point::Role);
 
+/// Twelve letters and digits that stand for a text in the name of a folder: the same on every machine and in
+/// every version.
+std::string name_mark(const std::string& text);
+
 /// Every run of the study, or of a cut of it (empty: the whole), references first. Runs that are the same are
 /// made once.
 /// @throws scenes::SceneError where there is no such cut, a reference is refused or, unless the study maps

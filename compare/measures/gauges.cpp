@@ -29,7 +29,7 @@ const Gauge flocculation = {
     "higher",
     "lower",
     "λ of Roussel's law, the mean over the mass: it falls while flow breaks the flocs and "
-    "grows while they rest. A run that has come to rest ends there."};
+    "grows while they rest. A run that has come to rest goes on by the law: the dotted tail."};
 
 /// Where the front can go no further, mm from the gate or from the back wall, as the front itself is counted.
 std::optional<double> end_wall(const runs::Run& run) {

@@ -135,7 +135,8 @@ const readByKeyboard = (canvas, chart) => {
 const paintLines = chart => {
   for (const dataset of chart.data.datasets) {
     const colour = inkOf(dataset.looks || dataset.entry);
-    Object.assign(dataset, {borderColor: colour, backgroundColor: colour, pointBackgroundColor: colour, pointBorderColor: colour});
+    // Points share what was first resolved for them; what is asked for at every drawing is not shared.
+    Object.assign(dataset, {borderColor: colour, backgroundColor: colour, pointBackgroundColor: () => colour, pointBorderColor: () => colour});
   }
 };
 // What is drawn in ink would vanish on the tooltip's ground.

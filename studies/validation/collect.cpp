@@ -1,0 +1,401 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "compare/comparison.h"
+#include "compare/comparison_page.h"
+#include "compare/fields/section.h"
+#include "compare/measures/gauges.h"
+#include "compare/run_view.h"
+#include "compare/words.h"
+#include "studies/validation/validation.h"
+
+namespace flowrest::studies::validation {
+
+namespace {
+
+namespace fs = std::filesystem;
+using compare::Comparison;
+using compare::RunView;
+using compare::Series;
+
+/// Samples of a curve in the page: a page of thirty scenes stays small.
+constexpr int samples = 160;
+constexpr std::size_t section_times = 7, section_bytes = 160'000;
+
+/// A run that is wanted, as a comparison has it; no view where there is no run.
+struct Seen {
+  const Wanted* wanted = nullptr;
+  const RunView* view = nullptr;
+};
+
+std::string slug(std::string name) {
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
+  return name;
+}
+
+int entry_index(std::vector<report::Entry>& entries, const Wanted& wanted) {
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (entries[i].name == wanted.label()) return static_cast<int>(i);
+  entries.push_back(
+      compare::entry_of(wanted.label(), to_string(wanted.solver), scenes::to_string(wanted.model)));
+  return static_cast<int>(entries.size()) - 1;
+}
+
+/// The name of a run's curve: with its warnings, which are its scene's and not the page's.
+std::string curve_name(const Seen& seen) {
+  std::string warnings;
+  if (seen.view->noisy) warnings = "noisy";
+  if (!seen.view->trouble.empty()) warnings += warnings.empty() ? "incomplete" : ", incomplete";
+  return warnings.empty() ? "" : fmt::format("{} ({})", seen.wanted->label(), warnings);
+}
+
+const Seen* partner(const std::vector<Seen>& all, const Seen& of, bool coarse) {
+  for (const Seen& other : all)
+    if (other.wanted->solver == of.wanted->solver && other.wanted->model == of.wanted->model &&
+        other.wanted->coarse == coarse)
+      return &other;
+  return nullptr;
+}
+
+std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>& all) {
+  std::vector<Number> numbers;
+  for (const Published& published : scene.published)
+    for (const Seen& fine : all) {
+      if (fine.wanted->coarse || (published.model && *published.model != fine.wanted->model)) continue;
+      Number n;
+      n.published = published;
+      n.solver = fine.wanted->solver;
+      n.model = fine.wanted->model;
+      const Seen* coarse = partner(all, fine, true);
+      if (fine.view) {
+        n.ours = compare::read(fine.view->run, published.quantity);
+        n.noise = fine.view->noisy ? fine.view->noise : "";
+        n.verdict = fine.view->trouble.empty() ? Verdict::never : Verdict::incomplete;
+        n.words = fine.view->trouble;
+      }
+      if (coarse && coarse->view) n.coarse = compare::read(coarse->view->run, published.quantity);
+      if (n.ours && n.coarse)
+        n.uncertainty =
+            compare::grid_uncertainty(*n.ours, fine.wanted->cell, *n.coarse, coarse->wanted->cell);
+      judge(n);
+      numbers.push_back(std::move(n));
+    }
+  return numbers;
+}
+
+/// The fluids of each solver at the time at which the solid rests, and later.
+std::vector<Perpetual> perpetual_of(const std::vector<Seen>& all, const compare::Gauge& gauge) {
+  std::vector<Perpetual> found;
+  for (const Seen& fluid : all) {
+    if (fluid.wanted->coarse || !fluid.view || !fluid.view->fluid || fluid.view->gauge.empty() ||
+        fluid.wanted->model == scenes::Model::newtonian)
+      continue;
+    Perpetual p{.solver = fluid.wanted->solver, .fluid = fluid.wanted->model};
+    for (const bool same_solver : {true, false})
+      for (const Seen& solid : all)
+        if (!p.rest && !solid.wanted->coarse && solid.view && !solid.view->fluid &&
+            (solid.wanted->solver == fluid.wanted->solver) == same_solver)
+          if (const auto rest = compare::read(solid.view->run, "rest_s")) {
+            p.rest = rest;
+            if (const auto value = solid.view->gauge_at(*rest)) p.solid = gauge.shown * *value;
+          }
+    const double end = fluid.view->gauge.end();
+    std::vector<double> times;
+    if (p.rest)
+      for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * *p.rest < 0.99 * end) times.push_back(factor * *p.rest);
+    times.push_back(end);
+    for (const double time : times)
+      if (const auto value = fluid.view->gauge_at(time)) p.fluid_at.emplace_back(time, gauge.shown * *value);
+    found.push_back(std::move(p));
+  }
+  return found;
+}
+
+std::vector<Flocculation> flocculation_of(const std::vector<Seen>& all) {
+  std::vector<Flocculation> found;
+  for (const Seen& seen : all) {
+    if (seen.wanted->coarse || !seen.view) continue;
+    const Series lambda = compare::column(seen.view->run, "flocculation_mean");
+    if (lambda.empty()) continue;
+    const auto least = std::min_element(lambda.value.begin(), lambda.value.end());
+    found.push_back({seen.wanted->label(), lambda.value.front(), *least,
+                     lambda.time[static_cast<std::size_t>(least - lambda.value.begin())], lambda.value.back(),
+                     lambda.end(), seen.view->held, compare::flocculation_at_rest(*seen.view)});
+  }
+  return found;
+}
+
+report::Curve curve_of(const Series& series, double shown, double end, int entry, std::string name) {
+  report::Curve curve{.name = std::move(name), .entry = entry};
+  const double from = series.time.front(), to = std::min(series.end(), end);
+  for (int i = 0; i <= samples; ++i) {
+    // Dense early, where most happens.
+    const double t = from + (to - from) * std::pow(static_cast<double>(i) / samples, 1.7);
+    curve.x.push_back(t);
+    curve.y.push_back(shown * series.at(t));
+  }
+  return curve;
+}
+
+report::Curve level(const std::string& name, double value, double end, int dash) {
+  return {.name = name, .x = {0.0, end}, .y = {value, value}, .colour = -1, .dash = dash};
+}
+
+/// The published values of the quantity that a gauge ends at, as lines.
+void add_published(report::Plot& plot, const SceneWanted& scene, const compare::Gauge& gauge, double end) {
+  std::set<double> drawn;
+  for (const Published& p : scene.published) {
+    if (p.quantity != gauge.column) continue;
+    const double unit = gauge.si * gauge.shown;
+    if (p.measured && drawn.insert(*p.measured).second)
+      plot.curves.push_back(level("measured", unit * *p.measured, end, 4));
+    if (p.paper && drawn.insert(*p.paper).second)
+      plot.curves.push_back(
+          level(p.mark == Mark::exact ? "exact" : "the paper's own run", unit * *p.paper, end, 5));
+  }
+}
+
+/// A gauge of every run against time.
+std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<Seen>& all,
+                                    const compare::Gauge& gauge, double end,
+                                    std::vector<report::Entry>& entries) {
+  report::Plot plot{.id = slug(scene.name) + "-" + slug(gauge.key),
+                    .title = fmt::format("{}: {} against time", scene.name, gauge.name),
+                    .caption = gauge.caption};
+  plot.x = {"time", "s", false, true};
+  plot.y = {gauge.name, gauge.unit, false, true};
+  bool moves = false;
+  for (const Seen& seen : all) {
+    if (seen.wanted->coarse || !seen.view) continue;
+    const Series series = compare::column(seen.view->run, gauge.column, gauge.si);
+    if (series.empty()) continue;
+    report::Curve curve =
+        curve_of(series, gauge.shown, end, entry_index(entries, *seen.wanted), curve_name(seen));
+    moves = moves || std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return y != 0.0; });
+    if (seen.view->held && curve.x.back() < end) {
+      // What is at rest stays as it is, but for its flocs, which go on growing by the law.
+      const double growth =
+          gauge.column == "flocculation_mean" ? compare::flocculation_at_rest(*seen.view) : 0.0;
+      curve.held_from = curve.x.back();
+      curve.y.push_back(curve.y.back() + growth * (end - curve.x.back()));
+      curve.x.push_back(end);
+    }
+    plot.curves.push_back(std::move(curve));
+  }
+  if (!moves) return std::nullopt;
+  // Where solids rest long before the fluids end, what happens is squeezed into a corner of a linear axis.
+  constexpr double long_before = 8.0, first_shown = 0.05;
+  for (const report::Curve& curve : plot.curves)
+    if (curve.held_from && long_before * *curve.held_from < end) {
+      plot.x.logarithmic = true;
+      plot.x.from = first_shown;
+    }
+  add_published(plot, scene, gauge, end);
+  return plot;
+}
+
+/// The level section of an L-box, in which the bars leave their streaks.
+std::optional<report::Section> streaks_of(const SceneWanted& scene, const Comparison& comparison,
+                                          const std::vector<Seen>& all, std::vector<report::Entry>& entries) {
+  if (scene.scene.kind != scenes::Kind::l_box || !scene.scene.thixotropy) return std::nullopt;
+  for (report::Section& section : compare::fields::sections_of(comparison, section_times, section_bytes)) {
+    if (section.id != "level-sections") continue;
+    std::erase_if(section.panels, [&](report::Section::Panel& panel) {
+      const RunView* view = &comparison.runs[static_cast<std::size_t>(panel.entry)];
+      const auto seen = std::find_if(all.begin(), all.end(),
+                                     [&](const Seen& s) { return s.view == view && !s.wanted->coarse; });
+      if (seen == all.end()) return true;
+      panel.entry = entry_index(entries, *seen->wanted);
+      return false;
+    });
+    section.id = slug(scene.name) + "-streaks";
+    section.title = scene.name + ": " + section.title;
+    section.clock = section.id;
+    if (!section.panels.empty()) return section;
+  }
+  return std::nullopt;
+}
+
+std::vector<report::Block> figures_of(const SceneWanted& scene, const Comparison& comparison,
+                                      const std::vector<Seen>& all, std::vector<report::Entry>& entries) {
+  std::vector<report::Block> figures;
+  double end = 0.0;
+  for (const Seen& seen : all)
+    if (!seen.wanted->coarse && seen.view && !seen.view->gauge.empty())
+      end = std::max(end, seen.view->gauge.end());
+  std::vector<compare::Gauge> gauges = {compare::gauge_of(scene.scene.kind)};
+  for (const compare::Gauge& gauge : compare::further_gauges(scene.scene.kind)) {
+    const bool of_slump = scene.scene.kind == scenes::Kind::slump && gauge.key == "height";
+    if (!of_slump && gauge.key != "start_height") gauges.push_back(gauge);
+  }
+  for (const compare::Gauge& gauge : gauges)
+    if (auto plot = plot_of(scene, all, gauge, end, entries)) figures.emplace_back(std::move(*plot));
+  if (auto section = streaks_of(scene, comparison, all, entries)) figures.emplace_back(std::move(*section));
+  return figures;
+}
+
+Found found_run(const Folder& folder, const Seen& seen, const compare::Gauge& gauge) {
+  Found found{*seen.wanted, outcome_of(folder, seen.wanted->point)};
+  found.label = fmt::format("{}, {:.4g} mm cells", seen.wanted->label(), 1e3 * seen.wanted->cell);
+  if (!seen.view) return found;
+  const RunView& view = *seen.view;
+  found.trouble = view.trouble;
+  found.noise = view.noisy ? view.noise : "";
+  found.walls_differ = view.walls_differ;
+  found.rest = compare::read(view.run, "rest_s");
+  found.end = view.measures.end;
+  if (view.measures.gauge_end) found.gauge_end = gauge.shown * *view.measures.gauge_end;
+  found.cpu = view.measures.cpu.value_or(0.0);
+  found.version = compare::word(view.run.info, "/provenance/git_hash");
+  return found;
+}
+
+std::vector<std::string> notes_of(const SceneFound& scene, const std::string& left_out) {
+  std::vector<std::string> notes;
+  std::map<std::string, std::vector<std::string>> walls;
+  for (const Found& found : scene.runs) {
+    if (!found.walls_differ.empty() && !found.wanted.coarse)
+      walls[found.walls_differ].push_back(found.wanted.label());
+    if (!found.noise.empty()) notes.push_back(fmt::format("{} is noisy: {}.", found.label, found.noise));
+    if (!found.trouble.empty()) notes.push_back(fmt::format("{}: {}.", found.label, found.trouble));
+    const bool without_data = found.outcome.ending == Ending::refused ||
+                              found.outcome.ending == Ending::crashed ||
+                              found.outcome.ending == Ending::too_long;
+    if (without_data)
+      notes.push_back(
+          fmt::format("{}: {}: {}", found.label, to_string(found.outcome.ending), found.outcome.reason));
+  }
+  for (const auto& [difference, labels] : walls)
+    notes.push_back(fmt::format("Walls of {} differ from the scene's: {}{}", compare::words::listed(labels),
+                                difference, difference.ends_with('.') ? "" : "."));
+  if (!left_out.empty()) notes.push_back(left_out);
+  return notes;
+}
+
+SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
+                         std::vector<report::Entry>& entries) {
+  const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind);
+  SceneFound scene{wanted.name, wanted.scene.title, wanted.scene.kind};
+  std::vector<fs::path> directories;
+  for (const Wanted& run : wanted.runs) {
+    entry_index(entries, run);
+    if (fs::exists(folder.run(run.point.id) / "run.json")) directories.push_back(folder.run(run.point.id));
+  }
+  Comparison comparison;
+  if (!directories.empty()) comparison = compare::compare_runs(directories);
+  std::vector<Seen> all;
+  for (const Wanted& run : wanted.runs) {
+    Seen seen{&run};
+    for (const RunView& view : comparison.runs)
+      if (view.run.directory == folder.run(run.point.id)) seen.view = &view;
+    all.push_back(seen);
+  }
+  std::vector<std::string> missing;
+  for (const Seen& seen : all) {
+    scene.runs.push_back(found_run(folder, seen, gauge));
+    if (scene.runs.back().outcome.ending == Ending::missing) missing.push_back(scene.runs.back().label);
+  }
+  if (!missing.empty())
+    scene.how_to_make =
+        fmt::format("flowrest validate {} -o {}", wanted.name, options.folder.lexically_normal().string());
+  for (const std::string& s : options.set)
+    if (!missing.empty()) scene.how_to_make += " --set " + s;
+  scene.numbers = numbers_of(wanted, all);
+  scene.perpetual = perpetual_of(all, gauge);
+  scene.flocculation = flocculation_of(all);
+  scene.figures = figures_of(wanted, comparison, all, entries);
+  scene.notes = notes_of(scene, wanted.left_out);
+  if (!missing.empty())
+    scene.notes.push_back(fmt::format("Not made, or not to the end: {}. Make what is missing: `{}`",
+                                      compare::words::listed(missing), scene.how_to_make));
+  return scene;
+}
+
+}  // namespace
+
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::misses:
+      return "misses";
+    case Verdict::unresolved:
+      return "unresolved";
+    case Verdict::never:
+      return "never happens";
+    case Verdict::incomplete:
+      return "incomplete";
+    case Verdict::not_run:
+      return "not run";
+    case Verdict::not_comparable:
+      return "not comparable";
+  }
+  throw std::logic_error("a verdict without a name");
+}
+
+std::optional<double> Number::difference() const {
+  const auto target = published.target();
+  return ours && target ? std::optional(*ours - *target) : std::nullopt;
+}
+
+void judge(Number& n) {
+  const std::string unit = compare::reading_named(n.published.quantity).unit;
+  const auto amount = [&](double value) {
+    return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+  };
+  const bool fluid = n.model != scenes::Model::elasto_viscoplastic;
+  if (!n.ours) {
+    // `never` and `incomplete` are set by whoever read the run.
+    if (n.verdict == Verdict::incomplete)
+      n.words = "incomplete: " + n.words;
+    else if (n.verdict == Verdict::never && fluid && n.published.quantity == "rest_s") {
+      n.verdict = Verdict::not_comparable;
+      n.words = "a fluid never rests";
+    } else
+      n.words = n.verdict == Verdict::never ? "never happens" : "not run";
+    return;
+  }
+  const auto difference = n.difference();
+  if (!difference) {
+    n.verdict = Verdict::not_comparable;
+    n.words = "nothing to compare with";
+    return;
+  }
+  const double miss = std::abs(*difference);
+  if (!n.uncertainty) {
+    n.verdict = Verdict::unresolved;
+    n.words = n.coarse ? "unresolved" : "unresolved: only one resolution has it";
+    return;
+  }
+  if (*n.uncertainty > n.published.allowed) {
+    n.verdict = Verdict::unresolved;
+    n.words = fmt::format("unresolved: known to ± {} only, {} are allowed", amount(*n.uncertainty),
+                          amount(n.published.allowed));
+    return;
+  }
+  if (miss > n.published.allowed) {
+    n.verdict = Verdict::misses;
+    n.words = fmt::format("misses by {}, {} are allowed", amount(miss), amount(n.published.allowed));
+    return;
+  }
+  n.verdict = Verdict::agrees;
+  n.words = n.published.mark == Mark::circular
+                ? "agrees, but the scene's yield stress was computed back from it"
+            : n.published.mark == Mark::calibrated ? "agrees, but the paper fitted a parameter to it"
+                                                   : "agrees";
+}
+
+Validation collect(const Folder& folder, const std::vector<SceneWanted>& wanted, const Options& options) {
+  Validation validation;
+  validation.items = read_paper_items();
+  for (const SceneWanted& scene : wanted)
+    validation.scenes.push_back(collect_scene(folder, scene, options, validation.entries));
+  return validation;
+}
+
+}  // namespace flowrest::studies::validation

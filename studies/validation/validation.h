@@ -1,0 +1,141 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/measures/series.h"
+#include "compare/report/page.h"
+#include "studies/job.h"
+#include "studies/validation/published.h"
+#include "studies/workflow.h"
+
+/// The papers' scenes, each run at two resolutions in every solver and law that it names, against published
+/// numbers. The runs are jobs of a study's workflow.
+namespace flowrest::studies::validation {
+
+struct Options {
+  std::vector<std::string> scenes = {};  ///< empty: every scene of scenes/papers.csv
+  std::vector<std::string> set = {};     ///< laid over all of them
+  std::optional<scenes::Model> model = {};
+  std::optional<Solver> solver = {};  ///< only its runs
+  double coarsening = 4.0 / 3.0;      ///< the second resolution's cells over the scene's
+  bool any_version = false;           ///< runs of other versions of flowrest are taken too
+  std::filesystem::path folder = "out/validation";
+};
+
+/// A run that is wanted.
+struct Wanted {
+  Solver solver = Solver::mpm;
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  bool coarse = false;  ///< of the second resolution
+  double cell = 0.0;    ///< m
+  Point point = {};
+  std::string label() const;  ///< "MPM elasto-viscoplastic"
+};
+
+/// A scene and the runs that are wanted of it.
+struct SceneWanted {
+  std::string name = {};
+  scenes::Scene scene = {};
+  std::vector<Wanted> runs = {};
+  std::vector<Published> published = {};
+  std::string left_out = {};  ///< runs that this build cannot make, and why; empty where there are none
+};
+
+/// What is to be run, and what it is held against. Nothing is written.
+/// @throws scenes::SceneError where a scene or a setting is refused; runs::RunError where a table is
+/// malformed.
+std::vector<SceneWanted> plan(const Options&);
+
+/// Every point of the plan, for the workflow.
+std::vector<Point> points_of(const std::vector<SceneWanted>&);
+
+enum class Verdict { agrees, misses, unresolved, never, incomplete, not_run, not_comparable };
+std::string to_string(Verdict);
+
+/// A published number and what one solver and law make of it.
+struct Number {
+  Published published = {};
+  Solver solver = Solver::mpm;
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
+  std::optional<double> ours = {};         ///< at the scene's resolution
+  std::optional<double> coarse = {};       ///< at the second one
+  std::optional<double> uncertainty = {};  ///< of ours, by the two: taken on to zero cell size at first order
+  Verdict verdict = Verdict::not_run;
+  std::string words = {};  ///< the verdict in full
+  std::string noise = {};  ///< why the run is noisy; empty where it is sound
+  std::optional<double> difference() const;
+};
+
+/// Judges ours against the target.
+void judge(Number&);
+
+/// What the fluid's perpetual flow makes of a scene in one solver: its gauge when the solid comes to rest,
+/// and later.
+struct Perpetual {
+  Solver solver = Solver::mpm;
+  scenes::Model fluid = scenes::Model::papanastasiou;
+  std::optional<double> rest = {};   ///< s, of the solid; none: it does not come to rest
+  std::optional<double> solid = {};  ///< its gauge then, in the figures' unit
+  std::vector<std::pair<double, double>> fluid_at =
+      {};  ///< time (s) and gauge: at the solid's rest, later, at the end
+};
+
+/// How the mean flocculation state goes in one run.
+struct Flocculation {
+  std::string label = {};
+  double start = 0.0, least = 0.0, least_at = 0.0, end = 0.0, end_at = 0.0;
+  bool held = false;          ///< the run ended at rest
+  double growth_at_rest = 0;  ///< 1/s, of the law without flow: it goes on from the run's end
+};
+
+/// A run as found.
+struct Found {
+  Wanted wanted = {};
+  Outcome outcome = {};
+  std::string label = {};                     ///< with its cells
+  std::string trouble = {}, noise = {};       ///< as comparisons have them
+  std::string walls_differ = {};              ///< in words
+  std::string version = {};                   ///< of flowrest, that made it
+  std::optional<double> rest = {}, end = {};  ///< s
+  std::optional<double> gauge_end = {};       ///< in the figures' unit
+  double cpu = 0.0;                           ///< s
+};
+
+/// All that is known of one scene.
+struct SceneFound {
+  std::string name = {}, title = {};
+  scenes::Kind kind = scenes::Kind::slump;
+  std::vector<Found> runs = {};
+  std::vector<Number> numbers = {};
+  std::vector<Perpetual> perpetual = {};
+  std::vector<Flocculation> flocculation = {};
+  std::vector<report::Block> figures = {};  ///< their entries are those of `entries`
+  std::vector<std::string> notes = {};      ///< warnings, in words
+  std::string how_to_make = {};  ///< the command for the runs that are missing; empty where none is
+};
+
+struct Validation {
+  std::vector<report::Entry> entries = {};  ///< a solver and a law each
+  std::vector<SceneFound> scenes = {};
+  std::vector<PaperItem> items = {};
+};
+
+/// Reads whatever runs there are.
+Validation collect(const Folder&, const std::vector<SceneWanted>&, const Options&);
+
+nlohmann::ordered_json to_json(const Validation&);
+std::string to_csv(const Validation&);
+report::Page page_of(const Validation&);
+
+/// Writes index.html, validation.json and validation.csv.
+void write(const Validation&, const std::filesystem::path& folder);
+
+void add_command(CLI::App&);
+
+}  // namespace flowrest::studies::validation

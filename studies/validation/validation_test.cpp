@@ -1,0 +1,259 @@
+#include "studies/validation/validation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "compare/report/browser.h"
+#include "compare/synthetic_runs.h"
+#include "runs/run_directory.h"
+
+using namespace flowrest;
+using namespace flowrest::studies;
+using namespace flowrest::studies::validation;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+namespace {
+
+class ValidationTest : public testing::Test {
+ protected:
+  ValidationTest() {
+    std::string pattern = (fs::temp_directory_path() / "flowrest-validation-XXXXXX").string();
+    folder.root = mkdtemp(pattern.data());
+    options.folder = folder.root;
+  }
+  ~ValidationTest() override { fs::remove_all(folder.root); }
+
+  /// A slump that spreads as end (1 - exp(-5 t)) from 200 mm, with flocs that break and, in a fluid, grow
+  /// again.
+  void make(const Wanted& wanted, double end, runs::Status status = runs::Status::end_time) const {
+    const scenes::Scene& scene = *wanted.point.scene;
+    const bool solid = wanted.model == scenes::Model::elasto_viscoplastic;
+    const double stops = solid ? 1.0 : 20.0;
+    runs::RunWriter writer(folder.run(wanted.point.id), scene, to_string(wanted.solver));
+    writer.history_columns({"time_s", "spread_mm", "shear_rate_p99_1_s", "flocculation_mean"});
+    for (int i = 0; 0.05 * i <= stops + 1e-9; ++i) {
+      const double time = 0.05 * i, creep = solid ? 0.0 : 0.25 * time;
+      writer.history(std::vector{time, 200.0 + (end - 200.0) * (1.0 - std::exp(-5.0 * time)) + creep, 1.0,
+                                 time < 1.0 ? 2.8 - time : 1.8 + 0.002 * (time - 1.0)});
+    }
+    writer.info()["cpu_s"] = 2.0;
+    if (solid) writer.info()["rest_time_s"] = stops;
+    writer.finish(solid && status == runs::Status::end_time ? runs::Status::at_rest : status, "", "sound");
+    fs::create_directories(folder.mark(wanted.point.id).parent_path());
+    std::ofstream(folder.mark(wanted.point.id)) << nlohmann::ordered_json{
+        {"ending", "finished"}, {"settings", nlohmann::ordered_json::parse(scenes::resolved_json(scene))}};
+  }
+
+  Folder folder;
+  Options options{.scenes = {"mix-a-slump-sf600"}, .solver = Solver::mpm};
+};
+
+Number number(double measured, double allowed, std::optional<double> ours, std::optional<double> uncertainty,
+              Mark mark = Mark::independent) {
+  Number n;
+  n.published = {"scene", "spread_mm", measured, std::nullopt, allowed, mark, "Table"};
+  n.ours = ours;
+  n.coarse = ours;
+  n.uncertainty = uncertainty;
+  n.verdict = Verdict::never;
+  judge(n);
+  return n;
+}
+
+}  // namespace
+
+TEST(Judgement, IsPlain) {
+  EXPECT_EQ(number(500, 30, 520.0, 10.0).words, "agrees");
+  EXPECT_EQ(number(500, 30, 520.0, 10.0, Mark::circular).words,
+            "agrees, but the scene's yield stress was computed back from it");
+  EXPECT_EQ(number(500, 30, 540.0, 10.0).words, "misses by 40 mm, 30 mm are allowed");
+  EXPECT_EQ(number(500, 30, 500.0, 31.0).verdict, Verdict::unresolved)
+      << "what is known less well than is allowed cannot agree";
+  EXPECT_EQ(number(500, 30, 500.0, std::nullopt).verdict, Verdict::unresolved) << "one grid knows nothing";
+  EXPECT_EQ(number(500, 30, std::nullopt, std::nullopt).words, "never happens");
+  Number fluid;
+  fluid.published = {"scene", "rest_s", 10.0, std::nullopt, 3.0, Mark::independent, "Table"};
+  fluid.model = scenes::Model::papanastasiou;
+  fluid.verdict = Verdict::never;
+  judge(fluid);
+  EXPECT_EQ(fluid.words, "a fluid never rests");
+}
+
+TEST(Published, EveryRowIsOfASceneThatThereIs) {
+  const auto published = read_published();
+  EXPECT_GE(published.size(), 28u);
+  for (const Published& p : published) {
+    EXPECT_NO_THROW(scenes::load_scene(p.scene)) << p.scene;
+    EXPECT_TRUE(p.target()) << p.scene;
+    EXPECT_GT(p.allowed, 0.0) << p.scene;
+  }
+  for (const PaperItem& item : read_paper_items())
+    EXPECT_NO_THROW(scenes::load_scene(item.scene)) << item.scene;
+}
+
+TEST_F(ValidationTest, AMalformedTableIsRefusedWithItsLine) {
+  const char* before = std::getenv("FLOWREST_SCENES");
+  const std::string kept = before ? before : "";
+  setenv("FLOWREST_SCENES", folder.root.c_str(), 1);
+  const auto complaint = [&](const std::string& row) -> std::string {
+    std::ofstream(folder.root / "published.csv")
+        << "# comment\nscene,quantity,measured,paper,allowed,mark,source,model\n"
+        << row << "\n";
+    try {
+      read_published();
+    } catch (const runs::RunError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(complaint("s,spread_mm,1,,2,,Table"), "taken");
+  EXPECT_THAT(complaint("s,spread_mm,1x,,2,,Table"), HasSubstr("published.csv:3: '1x' is no number"));
+  EXPECT_THAT(complaint("s,spread_mm,1"), HasSubstr(":3: has 3 cells; expected: 7 to 8"));
+  EXPECT_THAT(complaint("s,spread_mm,1,,2,fitted,Table"), HasSubstr("allowed: calibrated, circular"));
+  before ? setenv("FLOWREST_SCENES", kept.c_str(), 1) : unsetenv("FLOWREST_SCENES");
+}
+
+TEST_F(ValidationTest, HoldsTwoGridsOfEveryLawAgainstWhatIsPublished) {
+  const auto wanted = plan(options);
+  ASSERT_EQ(wanted.size(), 1u);
+  ASSERT_EQ(wanted[0].runs.size(), 4u) << "two laws on two grids";
+  for (const Wanted& run : wanted[0].runs) make(run, run.coarse ? 474.0 : 470.0);
+  const Validation found = collect(folder, wanted, options);
+  const SceneFound& scene = found.scenes.at(0);
+  ASSERT_EQ(scene.numbers.size(), 2u) << "one published number, two laws";
+  const Number& solid = scene.numbers[0];
+  // exp(-5) of 270 mm is still to come; the grids differ by 4 (1 - exp(-5)) mm on cells 4/3 apart.
+  EXPECT_NEAR(*solid.ours, 470.0 - 270.0 * std::exp(-5.0), 1e-9);
+  EXPECT_NEAR(*solid.uncertainty, 3.0 * 4.0 * (1.0 - std::exp(-5.0)), 1e-9);
+  EXPECT_EQ(solid.verdict, Verdict::agrees) << solid.words;
+  ASSERT_EQ(scene.perpetual.size(), 1u);
+  const Perpetual& p = scene.perpetual[0];
+  EXPECT_EQ(p.rest, 1.0);
+  ASSERT_EQ(p.fluid_at.size(), 4u) << "at rest, at twice and five times that, at the end";
+  EXPECT_NEAR(p.fluid_at[3].second - p.fluid_at[0].second, 0.25 * 19.0 + 270.0 * std::exp(-5.0), 1e-6);
+  ASSERT_EQ(scene.flocculation.size(), 2u);
+  EXPECT_NEAR(scene.flocculation[0].growth_at_rest, 0.39 / 92.0, 1e-12);
+  EXPECT_TRUE(scene.notes.empty());
+  write(found, folder.root);
+  const auto json = nlohmann::json::parse(std::ifstream(folder.root / "validation.json"));
+  EXPECT_EQ(json["scenes"][0]["numbers"][0]["verdict"], "agrees");
+  std::ifstream page(folder.root / "index.html");
+  const std::string html{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_THAT(html,
+              HasSubstr("MPM elasto-viscoplastic meets 1 of 1 published numbers (1 of them calibrated or "
+                        "circular, so no evidence)"));
+  std::ifstream csv(folder.root / "validation.csv");
+  const std::string rows{std::istreambuf_iterator<char>(csv), {}};
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3);
+}
+
+TEST_F(ValidationTest, AMissingRunSaysHowItIsMade) {
+  const auto wanted = plan(options);
+  make(wanted[0].runs[0], 470.0);
+  make(wanted[0].runs[2], 470.0, runs::Status::interrupted);
+  const Validation found = collect(folder, wanted, options);
+  const SceneFound& scene = found.scenes.at(0);
+  EXPECT_EQ(scene.numbers[0].words, "unresolved: only one resolution has it");
+  EXPECT_EQ(scene.numbers[1].verdict, Verdict::incomplete);
+  EXPECT_THAT(scene.numbers[1].words, HasSubstr("interrupted at 20 s"));
+  ASSERT_FALSE(scene.notes.empty());
+  EXPECT_THAT(scene.notes.back(), HasSubstr("`flowrest validate mix-a-slump-sf600 -o "));
+  EXPECT_THAT(scene.notes.back(), HasSubstr("MPM elasto-viscoplastic, 13.33 mm cells"));
+  EXPECT_NO_THROW(write(found, folder.root));
+  // Nothing at all is a page, too.
+  EXPECT_NO_THROW(write(collect(Folder{folder.root / "none"}, wanted, options), folder.root));
+}
+
+TEST_F(ValidationTest, WholeRunsOfTheSameSettingsAndVersionAreKept) {
+  const auto wanted = plan(options);
+  Study study;
+  study.name = "validation";
+  EXPECT_EQ(prepare(folder, study, points_of(wanted)), 4u);
+  for (const Wanted& run : wanted[0].runs) make(run, 470.0);
+  EXPECT_EQ(prepare(folder, study, points_of(plan(options))), 0u);
+  Options changed = options;
+  changed.set = {"material.yield_stress=93"};
+  EXPECT_EQ(prepare(folder, study, points_of(plan(changed))), 4u);
+  // A run of another version has the same name but for its mark; it is taken only where that is asked for.
+  const std::string id = wanted[0].runs[0].point.id;
+  const std::string other = id.substr(0, id.rfind('-')) + "-000000000000";
+  fs::rename(folder.run(id), folder.run(other));
+  fs::rename(folder.mark(id), folder.mark(other));
+  EXPECT_EQ(prepare(folder, study, points_of(plan(options))), 1u);
+  options.any_version = true;
+  EXPECT_EQ(prepare(folder, study, points_of(plan(options))), 0u);
+}
+
+TEST_F(ValidationTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
+  options.scenes = {"mix-a-slump-sf0", "no-such-scene"};
+  EXPECT_THROW(plan(options), scenes::SceneError);
+  options.scenes = {"mix-a-slump-sf0"};
+  options.model = scenes::Model::newtonian;
+  EXPECT_THROW(plan(options), scenes::SceneError);
+  EXPECT_TRUE(fs::is_empty(folder.root));
+}
+
+/// A page of a slump and an L-box, one run of them missing, opened in Chromium.
+TEST_F(ValidationTest, ThePageOpensAnswersAndIsReadableOnATelephone) {
+  if (report::browser_program().empty())
+    GTEST_SKIP() << "the page cannot be opened: Chromium is not installed (apt-get install chromium)";
+  options.scenes = {"mix-a-slump-sf600", "mix-b-lbox-sf600"};
+  const auto wanted = plan(options);
+  for (const Wanted& run : wanted[0].runs) make(run, run.coarse ? 474.0 : 470.0);
+  for (const Wanted& run : wanted[1].runs) {
+    if (run.coarse && run.model == scenes::Model::papanastasiou) continue;
+    compare::synthetic::Box box;
+    box.model = run.model;
+    box.set = {"mpm.threads=1"};
+    box.walls_differ = "the bars are square";
+    if (run.coarse) box.set.push_back("mpm.cell=" + std::to_string(run.cell));
+    compare::synthetic::write(box, folder.run(run.point.id));
+  }
+  write(collect(folder, wanted, options), folder.root);
+  report::Browser page(folder.root);
+  page.window(1280, 900);
+  page.open(folder.root / "index.html");
+  ASSERT_TRUE(page.wait_for("document.documentElement.dataset.drawn > 0"));
+  const auto ids = page.evaluate("[...document.querySelectorAll('figure')].map(f => f.id)");
+  EXPECT_EQ(ids[0], "lengths");
+  for (const auto& id : ids) {
+    page.evaluate("document.getElementById(" + id.dump() + ").scrollIntoView()");
+    EXPECT_TRUE(page.wait_for("document.getElementById(" + id.dump() +
+                              ").querySelector('.body').children.length > 0"))
+        << id;
+  }
+  EXPECT_THAT(page.evaluate("document.querySelector('.opening').textContent").get<std::string>(),
+              testing::AllOf(HasSubstr("MPM elasto-viscoplastic meets"), HasSubstr("missing")));
+  const std::string box = page.evaluate("document.getElementById('scene-mix-b-lbox-sf600').textContent");
+  EXPECT_THAT(box, HasSubstr("differ from the scene's: the bars are square."));
+  EXPECT_THAT(box, HasSubstr("flowrest validate mix-b-lbox-sf600"));
+  for (const auto& title : page.evaluate(
+           "[...document.querySelectorAll('section[id^=scene-] figure .title')].map(t => t.textContent)"))
+    EXPECT_THAT(title.get<std::string>(), testing::HasSubstr("mix-")) << "a figure lacks its scene's name";
+  // Every row of the table that does not agree carries its badge.
+  const auto rows = page.evaluate(
+      "[...document.querySelectorAll('#published tbody tr')].map(r => "
+      "[/^(agrees|a fluid)/.test(r.cells[7].textContent), "
+      "r.querySelectorAll('.badge').length])");
+  ASSERT_EQ(rows.size(), 6u);
+  for (const auto& row : rows)
+    if (!row[0]) {
+      EXPECT_EQ(row[1], 1);
+    }
+  const auto look = [&](const std::string& name) {
+    if (const char* kept = std::getenv("FLOWREST_SCREENSHOTS"))
+      page.screenshot(fs::path(kept) / (name + ".png"));
+  };
+  page.evaluate("window.scrollTo(0, 0)");
+  look("validation");
+  page.window(390, 844, true);
+  EXPECT_TRUE(page.wait_for("document.documentElement.scrollWidth <= document.documentElement.clientWidth"));
+  look("validation-telephone");
+  EXPECT_TRUE(page.pdf().starts_with("%PDF-"));
+  EXPECT_THAT(page.complaints(), testing::IsEmpty());
+}
