@@ -250,9 +250,7 @@ std::vector<Key> mpm_keys() {
       number("mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
              "share of the volume by which particles overlap that is taken back per unit of shear strain; 0 "
              "lets material that is sheared for long sink into itself")
-          .otherwise(
-              "1; linear-flip 0.3; 0 in ducts, beside walls that do not lie along the grid or have friction, "
-              "and always with paper"),
+          .otherwise("1; linear-flip 0.3; ducts and funnels 0; always 0 with paper"),
   };
 }
 

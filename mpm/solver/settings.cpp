@@ -23,14 +23,13 @@ Law law_of(scenes::Model model, bool thixotropic) {
   return Law::newtonian;
 }
 
-double density_correction(const scenes::Scene& scene, bool walls_of_any_shape) {
+double density_correction(const scenes::Scene& scene) {
   const auto& mpm = scene.mpm;
   if (mpm.scheme == scenes::Scheme::paper) return 0.0;
   // A duct has no free surface to make room at: its particles would only shrink, and with them what resists.
-  // Nor is there one in a funnel's neck or under the front wall of an L-box; what is tested there is over
-  // before particles drift, and where a jet drives them into a heap, pressure would make more energy than it
-  // may.
-  const bool left_alone = scene.kind == scenes::Kind::duct || walls_of_any_shape;
+  // Nor is there one in a funnel's neck; and in the heap under it, into which a jet drives particles,
+  // pressure would make more energy than it may.
+  const bool left_alone = scene.kind == scenes::Kind::duct || scene.kind == scenes::Kind::v_funnel;
   const double usual = mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3;
   return mpm.density_correction.value_or(left_alone ? 0.0 : usual);
 }
@@ -82,6 +81,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.density = m.density;
   // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
+  s.density_correction = density_correction(scene);
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);
@@ -94,7 +94,6 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   const SceneWalls walls = walls_of(scene, s.cell);
   s.bounds = walls.bounds;
   s.walls = walls.walls;
-  s.density_correction = density_correction(scene, !s.walls.empty());
   s.threads = scene.mpm.threads;
   return s;
 }

