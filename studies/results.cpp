@@ -409,8 +409,9 @@ void find_notes(Results& results) {
 
 /// The cheapest run of each solver that is within an error, in words.
 void find_findings(Results& results) {
-  for (const auto& [quantity, reference] : results.reference) {
-    if (is_difference(quantity)) continue;
+  for (const std::string& quantity : results.study.quantities) {
+    if (is_difference(quantity) || !results.reference.contains(quantity)) continue;
+    const ReferenceValue& reference = results.reference.at(quantity);
     results.findings.push_back(fmt::format(
         "Reference {} = {:.4g} {}{}: {}.", quantity, reference.value, unit_of(quantity),
         reference.uncertainty ? fmt::format(" with an uncertainty of {:.2g}", *reference.uncertainty) : "",
