@@ -277,6 +277,16 @@ std::vector<std::string> notes_of(const SceneFound& scene, const std::string& le
   return notes;
 }
 
+/// The command that makes a scene's runs.
+std::string command_for(const std::string& scene, const Options& options) {
+  std::string command =
+      fmt::format("flowrest validate {} -o {}", scene, options.folder.lexically_normal().string());
+  if (options.solver) command += " --solver " + to_string(*options.solver);
+  if (options.model) command += " --model " + scenes::to_string(*options.model);
+  for (const std::string& s : options.set) command += " --set " + s;
+  return command;
+}
+
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
                          std::vector<report::Entry>& entries) {
   const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind);
@@ -300,11 +310,7 @@ SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const 
     scene.runs.push_back(found_run(folder, seen, gauge));
     if (scene.runs.back().outcome.ending == Ending::missing) missing.push_back(scene.runs.back().label);
   }
-  if (!missing.empty())
-    scene.how_to_make =
-        fmt::format("flowrest validate {} -o {}", wanted.name, options.folder.lexically_normal().string());
-  for (const std::string& s : options.set)
-    if (!missing.empty()) scene.how_to_make += " --set " + s;
+  if (!missing.empty()) scene.how_to_make = command_for(wanted.name, options);
   scene.numbers = numbers_of(wanted, all);
   scene.perpetual = perpetual_of(all, gauge);
   scene.flocculation = flocculation_of(all);
