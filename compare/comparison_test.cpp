@@ -456,7 +456,7 @@ TEST_F(ComparisonTest, AnLBoxIsToldInItsOwnWords) {
   EXPECT_FALSE(run(comparison, "MPM elasto-viscoplastic").measures.readings.at("arrival_s").value);
   const std::string told = text(comparison);
   EXPECT_THAT(told,
-              HasSubstr("MPM papanastasiou reaches the end wall after 1.9 s and stands 40.0 mm high there"));
+              HasSubstr("MPM papanastasiou reaches the end wall after 1.9 s and stands 40 mm high there"));
   EXPECT_THAT(told, HasSubstr("from 4.40 to 2.40 at 2.0 s, up again to 2.56 by 10 s"));
   EXPECT_THAT(told, Not(HasSubstr("spread")));
   EXPECT_THAT(comparison.notes,

@@ -79,7 +79,7 @@ std::string trouble_of(const RunView& view) {
     case runs::Status::running:
       return "still running, or killed, " + at + why;
     case runs::Status::interrupted:
-      return "interrupted " + at + why;
+      return reason.starts_with("interrupted") ? reason : "interrupted " + at + why;
     case runs::Status::failed:
       return "failed " + at + why;
     case runs::Status::at_rest:

@@ -34,7 +34,8 @@ std::string spread(double metres, const std::optional<double>& uncertainty) {
 std::string reading(double value, const std::optional<double>& uncertainty, const std::string& unit) {
   const std::string after = unit.empty() ? "" : " " + unit;
   if (!uncertainty || !(*uncertainty > 0.0) || !std::isfinite(*uncertainty))
-    return significant(value, unit == "s" ? 2 : 3) + after;
+    return unit == "mm" ? fmt::format("{:.0f}{}", value, after)
+                        : significant(value, unit == "s" ? 2 : 3) + after;
   // One digit of the uncertainty, two where it begins with 1; the value ends at the same place.
   const double leading = std::pow(10.0, std::floor(std::log10(*uncertainty)));
   const double least = unit == "mm" ? 1.0 : unit == "s" ? 0.01 : 0.0;

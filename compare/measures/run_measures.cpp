@@ -114,9 +114,15 @@ RunView* other_grid(Comparison& comparison, const RunView& view) {
 /// By how much the gauge at the end still changes with the grid, taken on to zero cell size at first order.
 std::optional<double> grid_difference(Comparison& comparison, const RunView& view) {
   const RunView* other = other_grid(comparison, view);
-  if (!other || !other->measures.gauge_end) return std::nullopt;
-  return grid_uncertainty(*view.measures.gauge_end, *cell_of(view), *other->measures.gauge_end,
-                          *cell_of(*other));
+  if (!other || view.gauge.empty() || other->gauge.empty()) return std::nullopt;
+  // At the last time that both have reached; what is at rest stays as it is.
+  const double last = view.held     ? other->gauge.end()
+                      : other->held ? view.gauge.end()
+                                    : std::min(view.gauge.end(), other->gauge.end());
+  const double time = view.held && other->held ? std::max(view.gauge.end(), other->gauge.end()) : last;
+  const auto own = view.gauge_at(time), theirs = other->gauge_at(time);
+  if (!own || !theirs) return std::nullopt;
+  return grid_uncertainty(*own, *cell_of(view), *theirs, *cell_of(*other));
 }
 
 /// The run whose arrested spread overshoots are counted from: elasto-viscoplastic, the same solver if it can

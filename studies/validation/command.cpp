@@ -56,7 +56,7 @@ void print_numbers(const Validation& validation) {
           fmt::format(
               "{} {}", n.solver == Solver::mpm ? "MPM" : "OpenFOAM",
               scenes::to_string(n.model) == "elasto-viscoplastic" ? "solid" : scenes::to_string(n.model)),
-          target ? compare::words::reading(*target, std::nullopt, reading.unit) : "-", ours, width,
+          target ? fmt::format("{:.4g} {}", *target, reading.unit) : "-", ours, width,
           reading.name + ": " + n.words, n.noise.empty() ? "" : "; noisy: " + n.noise);
     }
 }

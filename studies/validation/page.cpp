@@ -198,15 +198,20 @@ class ValidationPage {
     std::string text;
     if (!rests.empty()) {
       const auto [first, last] = std::minmax_element(rests.begin(), rests.end());
-      text = fmt::format("{} of {} elasto-viscoplastic runs come to rest, between {} and {}.", rests.size(),
-                         solids, compare::words::time(*first), compare::words::time(*last));
+      text = fmt::format("{} of {} elasto-viscoplastic runs come to rest, {}.", rests.size(), solids,
+                         *first == *last ? "after " + compare::words::time(*first)
+                                         : fmt::format("between {} and {}", compare::words::time(*first),
+                                                       compare::words::time(*last)));
     } else if (solids > 0) {
       text = "No elasto-viscoplastic run comes to rest before its end.";
     }
     if (restless > 0 && !rests.empty())
       text += fmt::format(" {} {} still moving at {} end.", restless, restless == 1 ? "is" : "are",
                           restless == 1 ? "its" : "their");
-    if (fluids > 0) text += fmt::format("{}The {} fluid runs never do.", text.empty() ? "" : " ", fluids);
+    if (fluids > 0)
+      text += fmt::format(
+          "{}{}", text.empty() ? "" : " ",
+          fluids == 1 ? "The fluid never does." : fmt::format("The {} fluid runs never do.", fluids));
     return text;
   }
 
@@ -279,9 +284,11 @@ class ValidationPage {
     const auto add = [&](const char* what, std::vector<double>& values) {
       if (values.empty()) return;
       std::sort(values.begin(), values.end());
-      parts.push_back(values.size() == 1 ? fmt::format("{} by {:.0f} mm", what, values.front())
-                                         : fmt::format("{} by {:.0f} mm in the middle and {:.0f} mm at most",
-                                                       what, values[values.size() / 2], values.back()));
+      parts.push_back(
+          values.front() == values.back() || values.size() == 2
+              ? fmt::format("{} by {:.0f} mm{}", what, values.back(), values.size() > 1 ? " at most" : "")
+              : fmt::format("{} by {:.0f} mm in the middle and {:.0f} mm at most", what,
+                            values[values.size() / 2], values.back()));
     };
     add("another law (physics) moves the end of a spread or front", law);
     add("another solver (discretisation)", solver);
@@ -522,18 +529,17 @@ class ValidationPage {
     for (const std::string& note : scene.notes) chapter.blocks.push_back(Text{note, Text::Style::warning});
     for (const Number& n : scene.numbers)
       if (n.ours)
-        chapter.blocks.push_back(
-            Text{fmt::format("{}: {} {}{}; {}.", who(n), compare::reading_named(n.published.quantity).name,
-                             reading(*n.ours, n.uncertainty, unit_of(n)),
-                             n.published.target()
-                                 ? fmt::format(", {} {}",
-                                               n.published.measured              ? "measured"
-                                               : n.published.mark == Mark::exact ? "exact"
-                                                                                 : "in the paper",
-                                               reading(*n.published.target(), std::nullopt, unit_of(n)))
-                                 : "",
-                             n.words),
-                 Text::Style::small});
+        chapter.blocks.push_back(Text{
+            fmt::format("{}: {} {}{}; {}.", who(n), compare::reading_named(n.published.quantity).name,
+                        reading(*n.ours, n.uncertainty, unit_of(n)),
+                        n.published.target() ? fmt::format(", {} {}",
+                                                           n.published.measured              ? "measured"
+                                                           : n.published.mark == Mark::exact ? "exact"
+                                                                                             : "in the paper",
+                                                           plain(*n.published.target(), unit_of(n)))
+                                             : "",
+                        n.words),
+            Text::Style::small});
     for (const report::Block& figure : scene.figures) chapter.blocks.push_back(figure);
     return chapter;
   }
