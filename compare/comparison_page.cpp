@@ -124,9 +124,7 @@ Chapter further_chapter(const Comparison& comparison) {
       if (const RunView& view = comparison.runs[i];
           view.held && !curve.x.empty() && curve.x.back() < comparison.end) {
         const double growth = gauge.column == "flocculation_mean" ? flocculation_at_rest(view) : 0.0;
-        curve.held_from = curve.x.back();
-        curve.y.push_back(curve.y.back() + growth * (comparison.end - curve.x.back()));
-        curve.x.push_back(comparison.end);
+        carry_on(curve, growth, comparison.end);
       }
       plot.curves.push_back(std::move(curve));
     }
@@ -653,6 +651,19 @@ std::vector<Block> words_of(const Comparison& comparison) {
 }
 
 }  // namespace
+
+void carry_on(report::Curve& curve, double rate, double end) {
+  const double from = curve.x.back(), value = curve.y.back();
+  curve.held_from = from;
+  // Not one straight line: on a logarithmic axis a steady growth is bent.
+  constexpr int points = 30;
+  for (int i = 1; i <= points; ++i) {
+    const double share = static_cast<double>(i) / points,
+                 time = from > 0.0 ? from * std::pow(end / from, share) : end * share;
+    curve.x.push_back(time);
+    curve.y.push_back(value + rate * (time - from));
+  }
+}
 
 report::Entry entry_of(const std::string& name, const std::string& solver, const std::string& model) {
   report::Entry entry{name};

@@ -5,6 +5,10 @@
 
 namespace flowrest::compare {
 
+/// Carries the curve of a run that has come to rest on to `end` (s), as a tail: level but for what grows by
+/// `rate` a second even at rest.
+void carry_on(report::Curve&, double rate, double end);
+
 /// The comparison as a page. `json`: what to_json says of it.
 report::Page page_of(const Comparison&, const nlohmann::ordered_json& json);
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "compare/comparison_page.h"
 #include "compare/exact/exact_run.h"
 #include "compare/fields/states.h"
 #include "compare/synthetic_runs.h"
@@ -483,4 +484,13 @@ TEST_F(ComparisonTest, AFunnelsGridsSayHowWellItsLightIsKnown) {
   EXPECT_NEAR(*light.uncertainty, 0.5 * (1.0 - 3.0 / 600.0), 1e-9);
   EXPECT_THAT(comparison.findings.front().text,
               HasSubstr("and after 2.0 ± 0.5 s (MPM elasto-viscoplastic, 10 mm cells)"));
+}
+
+TEST(CarriedOn, WhatRestsGrowsSteadilyOrNotAtAll) {
+  report::Curve curve{.x = {0.0, 1.0}, .y = {3.0, 2.0}};
+  carry_on(curve, 0.1, 11.0);
+  EXPECT_EQ(curve.held_from, 1.0);
+  EXPECT_NEAR(curve.x.back(), 11.0, 1e-12);
+  for (std::size_t i = 1; i < curve.x.size(); ++i)
+    EXPECT_NEAR(curve.y[i], 2.0 + 0.1 * (curve.x[i] - 1.0), 1e-12) << "at " << curve.x[i];
 }

@@ -181,9 +181,7 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
       // What is at rest stays as it is, but for its flocs, which go on growing by the law.
       const double growth =
           gauge.column == "flocculation_mean" ? compare::flocculation_at_rest(*seen.view) : 0.0;
-      curve.held_from = curve.x.back();
-      curve.y.push_back(curve.y.back() + growth * (end - curve.x.back()));
-      curve.x.push_back(end);
+      compare::carry_on(curve, growth, end);
     }
     plot.curves.push_back(std::move(curve));
   }

@@ -115,7 +115,7 @@ class ValidationPage {
     std::vector<std::string> rest;
     const std::pair<Verdict, const char*> others[] = {{Verdict::misses, "missed"},
                                                       {Verdict::unresolved, "unresolved by these grids"},
-                                                      {Verdict::never, "never come to pass"},
+                                                      {Verdict::never, "not reached"},
                                                       {Verdict::incomplete, "incomplete"},
                                                       {Verdict::not_run, "not run"}};
     for (const auto& [verdict, name] : others)
