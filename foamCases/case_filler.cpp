@@ -12,6 +12,7 @@
 
 #include "foamCases/concrete_laws.h"
 #include "foamCases/quarter_grid.h"
+#include "foamCases/vessel_mesh.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
 #include "scenes/step_limits.h"
@@ -199,6 +200,27 @@ std::string duct_parameters(const Scene& scene) {
              wall(scene), body_forces(scene));
 }
 
+/// Fills the box that the concrete stands in; faces of cells lie on its sides.
+std::string vessel_parameters(const Scene& scene) {
+  const auto [low, high] = initial_box(scene);
+  return fmt::format(
+             "// Concrete at the start, m: a box between two corners. The mesh is in system/blockMeshDict.\n"
+             "fillLow             ({} {} {});\n"
+             "fillHigh            ({} {} {});\n",
+             low[0], low[1], low[2], high[0], high[1], high[2]) +
+         time_parameters(scene) +
+         fmt::format(
+             "\n// Forces and walls.\n"
+             "gravity             (0 0 {});  // m/s2\n"
+             "baseWall            {}\n",
+             -scene.forces.gravity, wall_condition(scene));
+}
+
+std::string geometry_parameters(const Scene& scene) {
+  if (is_vessel(scene)) return vessel_parameters(scene);
+  return scene.kind == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene);
+}
+
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -231,10 +253,23 @@ std::string initial_fraction(const Scene& scene) {
   return text + ")";
 }
 
+std::string vessel_block_mesh(const Scene& scene) {
+  return block_mesh_dictionary(vessel_mesh(scene),
+                               fmt::format("// The mesh of the scene '{}', m: `flowrest foam` writes it, "
+                                           "blocks of cells of about {} m. x runs along "
+                                           "the\n// channel or across the funnel's slopes, z upwards. Gauges "
+                                           "count on the order of the cells.\n",
+                                           scene.name, scene.foam.cell));
+}
+
 void check_supported(const Scene& scene) {
   check_model(scene);
   if (scene.kind == scenes::Kind::duct) {
     duct_cells(scene);
+    return;
+  }
+  if (is_vessel(scene)) {
+    vessel_mesh(scene);
     return;
   }
   if (scene.geometry.dimension != scenes::Dimension::axisymmetric && !is_quarter(scene))
@@ -260,6 +295,7 @@ std::size_t duct_cells(const Scene& scene) {
 
 std::size_t mesh_cells(const Scene& scene) {
   if (scene.kind == scenes::Kind::duct) return duct_cells(scene);
+  if (is_vessel(scene)) return mesh_cells(vessel_mesh(scene)).size();
   return is_quarter(scene) ? quarter_grid(scene).cells() : wedge_grid(scene).cells();
 }
 
@@ -280,8 +316,7 @@ std::string scene_parameters(const Scene& scene, bool plug_in, int ranks) {
              "// includes it. SI units; stresses and viscosities of the transport models are over the "
              "density.\n\n",
              parameters_begin, scene.name) +
-         (scene.kind == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene)) +
-         phase_parameters(scene) + concrete_laws(scene, plug_in) +
+         geometry_parameters(scene) + phase_parameters(scene) + concrete_laws(scene, plug_in) +
          fmt::format("\n// Parts into which decomposePar cuts the case.\nranks               {};\n", ranks);
 }
 
@@ -307,6 +342,7 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
                  fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     fs::remove_all(directory / "constant" / "polyMesh");
     if (is_quarter(scene)) write_initial_fraction(scene, directory / "0.orig" / "alpha.concrete");
+    if (is_vessel(scene)) write_text(directory / "system" / "blockMeshDict", vessel_block_mesh(scene));
     fs::remove_all(directory / "0");
     fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
     fs::remove(directory / plug_in_link);

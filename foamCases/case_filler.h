@@ -26,6 +26,9 @@ std::string case_name(const scenes::Scene&);
 /// A quarter's initial fraction as the entry internalField, a line to a row of cells.
 std::string initial_fraction(const scenes::Scene&);
 
+/// The blockMeshDict of an L-box, a V-funnel or a dam break.
+std::string vessel_block_mesh(const scenes::Scene&);
+
 /// Cells of the scene's mesh.
 std::size_t mesh_cells(const scenes::Scene&);
 

@@ -77,6 +77,39 @@ TEST(CaseFiller, TheCommittedDuctIsTheStepDown) {
          "foam.laws=built-in` writes";
 }
 
+/// Coarse, so that they can be read and run while one waits.
+scenes::Scene committed_vessel(const std::string& kind) {
+  if (kind == "dam-break")
+    return scenes::load_scene("dam-break", {{"foam.cell=0.04"}, scenes::Model::newtonian});
+  if (kind == "l-box")
+    return scenes::load_scene("mix-a-lbox-sf0", {{"foam.cell=0.025"}, scenes::Model::papanastasiou});
+  return scenes::load_scene("mix-a-vfunnel-sf0", {{"foam.cell=0.02"}, scenes::Model::elasto_viscoplastic});
+}
+
+TEST(CaseFiller, TheCommittedVesselsAreScenesOnCoarseCells) {
+  for (const char* kind : {"dam-break", "l-box", "v-funnel"}) {
+    const auto scene = committed_vessel(kind);
+    EXPECT_EQ(case_name(scene), kind);
+    EXPECT_EQ(text_of(cases_folder() / kind / "sceneParameters"), scene_parameters(scene, true))
+        << "foamCases/" << kind << "/sceneParameters is what `flowrest foam " << scene.name
+        << "` writes with --set foam.cell=" << scene.foam.cell << " --model "
+        << scenes::to_string(scene.material.model);
+    EXPECT_EQ(text_of(cases_folder() / kind / "system" / "blockMeshDict"), vessel_block_mesh(scene));
+  }
+}
+
+TEST(CaseFiller, AVesselsConcreteStandsInABoxBetweenWallsOfTheScene) {
+  const auto scene = scenes::load_scene(
+      "mix-a-lbox-sf0", {{"walls.base={friction=0.4}", "time.end=3"}, scenes::Model::elasto_viscoplastic});
+  const auto text = scene_parameters(scene, true);
+  for (const char* entry :
+       {"fillLow             (-1000 -1000 -1000);", "fillHigh            (0.1 1000 0.6);",
+        "baseWall            { type coulombFriction; friction 0.4; }", "gravity             (0 0 -9.81);",
+        "endTime             3;", "type            shearRate;", "flocculation plasticShearRate"})
+    EXPECT_THAT(text, HasSubstr(entry));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("airRises")));
+}
+
 TEST(CaseFiller, TakesEveryNumberFromTheScene) {
   const auto scene = roussel_slump(
       "bi-viscous",

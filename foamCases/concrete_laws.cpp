@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "foamCases/vessel_mesh.h"
 #include "foamCases/viscosity.h"
 
 namespace flowrest::foam {
@@ -106,8 +107,14 @@ std::string plug_in_stress(const Scene& scene) {
       material.youngs_modulus, indent, material.poisson_ratio, common_coefficients(scene, indent));
 }
 
-/// What is done to the concrete after every step.
-std::string air_rises(const Scene& scene, bool plug_in) {
+/// What is done to the concrete after every step, or read off it.
+std::string after_every_step(const Scene& scene, bool plug_in) {
+  if (plug_in && is_vessel(scene))
+    return fmt::format(
+        "afterEveryStep\n{{\n    shearRate\n    {{\n        type            shearRate;\n        libs         "
+        "   "
+        "$rheologyLibraries;\n        strainRate      {};\n    }}\n}}\n",
+        scenes::to_string(scene.foam.strain_rate));
   if (!plug_in || !(scene.foam.air_rise_time.value_or(0.0) > 0.0) || scene.kind != scenes::Kind::slump)
     return "afterEveryStep\n{\n}\n";
   return fmt::format(
@@ -127,6 +134,7 @@ std::string stress_model(const Scene& scene, bool plug_in) {
 
 std::string concrete_laws(const Scene& scene, bool plug_in) {
   std::string sampled, state;
+  if (plug_in && is_vessel(scene)) sampled += " shearRate";
   if (plug_in && scene.thixotropy && scene.material.model != Model::newtonian) sampled += " flocculation";
   if (scene.material.model == Model::elasto_viscoplastic) {
     sampled += " plasticShearRate";
@@ -140,7 +148,7 @@ std::string concrete_laws(const Scene& scene, bool plug_in) {
              "historyObjects      (alpha.concrete U{});\n"
              "stateObjects        (alpha.concrete U p_rgh phi{}{});\n{}\n",
              plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state,
-             air_rises(scene, plug_in)) +
+             after_every_step(scene, plug_in)) +
          stress_model(scene, plug_in);
 }
 

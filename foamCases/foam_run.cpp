@@ -21,6 +21,8 @@
 #include "foamCases/run_state.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
+#include "foamCases/vessel_mesh.h"
+#include "foamCases/vessel_sampler.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "scenes/step_limits.h"
@@ -66,6 +68,7 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
     programs.prepare.push_back({needed_program("setAlphaField"), {}});
     programs.prepare.push_back({needed_program("setFields"), {}});
   }
+  if (is_vessel(scene)) programs.prepare.push_back({needed_program("setFields"), {}});
   programs.solve = {needed_program("interFoam"), {}};
   if (ranks <= 1) return programs;
   programs.decompose = Call{needed_program("decomposePar"), {"-force", "-latestTime"}};
@@ -78,7 +81,8 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
 }
 
 std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
-                                      runs::RunWriter& writer) {
+                                      runs::RunWriter& writer, bool plug_in) {
+  if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
   if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer);
   return std::make_unique<SlumpSampler>(scene, fields, writer);
 }
@@ -96,7 +100,10 @@ std::map<std::string, std::string> openfoam_environment() {
 
 /// Components of the velocity that a case solves for: those whose residuals tell of noise.
 std::string components(const scenes::Scene& scene) {
-  return scene.geometry.dimension == scenes::Dimension::quarter ? "xyz" : "xz";
+  return scene.geometry.dimension == scenes::Dimension::quarter ||
+                 scene.geometry.dimension == scenes::Dimension::half
+             ? "xyz"
+             : "xz";
 }
 
 /// Which of the scene's walls the case does not have, in words; empty where it has them all.
@@ -169,7 +176,7 @@ class CaseRun {
 
   void begin() {
     if (!state_) fill_case(scene_, case_, plug_in_, options_.ranks);
-    sampler_ = make_sampler(scene_, CaseFields(case_, options_.ranks), writer_);
+    sampler_ = make_sampler(scene_, CaseFields(case_, options_.ranks), writer_, plug_in_.has_value());
     if (state_) go_on();
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();

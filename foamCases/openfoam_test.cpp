@@ -214,6 +214,70 @@ TEST_F(PlugIn, AConeInAMouldIsReleasedAtOnce) {
   EXPECT_GT(result.history.at("flocculation_mean").back(), 0.0);
 }
 
+/// The front cannot outrun Ritter's of an ideal fluid on a dry floor, 2 sqrt(g h).
+TEST_F(OpenFoam, ADamBreaks) {
+  const auto result = run(scenes::load_scene(
+      "dam-break", {{"foam.cell=0.04", "time.end=0.35", "geometry.tank_length=2.4"}, std::nullopt}));
+  EXPECT_EQ(outcome_.status, runs::Status::end_time);
+  EXPECT_LT(std::abs(result.info["initial_volume_error"].get<double>()), 1e-12);
+  EXPECT_LT(result.info["volume_error"].get<double>(), 1e-6);
+  const auto& time = result.history.at("time_s");
+  const auto& front = result.history.at("front_mm");
+  EXPECT_NEAR(result.history.at("start_height_mm").front(), 600.0, 1e-9);
+  EXPECT_LT(result.history.at("start_height_mm").back(), 600.0);
+  const double speed = (front.back() - front[front.size() / 2]) / (time.back() - time[time.size() / 2]);
+  EXPECT_LT(speed, 1e3 * 2.0 * std::sqrt(9.8 * 0.6));
+  EXPECT_NEAR(speed, 3560.0, 300.0);  // measured; a guard
+  // What has fallen moves, less what was lost on the way.
+  const double fallen =
+      result.history.at("potential_energy_J").front() - result.history.at("potential_energy_J").back();
+  EXPECT_LT(result.history.at("kinetic_energy_J").back(), fallen);
+  EXPECT_GT(result.history.at("kinetic_energy_J").back(), 0.8 * fallen);
+}
+
+/// Concrete at rest in the L-box weighs on the floor and comes out under the wall, round the bars.
+TEST_F(PlugIn, AnLBoxRunsOutBetweenItsBars) {
+  for (const char* model : {"papanastasiou", "elasto-viscoplastic"}) {
+    const auto result = run(scenes::load_scene(
+        "mix-a-lbox-sf0", {{"foam.cell=0.033", "time.end=0.12"}, scenes::model_from_name(model)}));
+    EXPECT_EQ(outcome_.status, runs::Status::end_time) << model;
+    EXPECT_EQ(result.info["verdict"], "sound") << model;
+    EXPECT_LT(std::abs(result.info["initial_volume_error"].get<double>()), 1e-12);
+    EXPECT_LT(result.info["volume_error"].get<double>(), 1e-6);
+    EXPECT_GT(result.history.at("front_mm").back(), 40.0) << model;
+    EXPECT_LT(result.history.at("front_mm").back(), 500.0 * 9.81 * 0.12 * 0.12 + 100.0) << model;
+    EXPECT_LT(result.history.at("start_height_mm").back(), 595.0) << model;
+    EXPECT_GT(result.history.at("flocculation_mean").back(), 0.0);
+  }
+}
+
+/// A straight shaft without friction falls freely; a funnel with it is slower.
+TEST_F(PlugIn, AVFunnelRunsOut) {
+  for (const char* model : {"papanastasiou", "elasto-viscoplastic"}) {
+    const auto result = run(scenes::load_scene(
+        "mix-a-vfunnel-sf0", {{"foam.cell=0.02", "time.end=0.3"}, scenes::model_from_name(model)}));
+    EXPECT_EQ(outcome_.status, runs::Status::end_time) << model;
+    EXPECT_EQ(result.info["verdict"], "sound") << model;
+    EXPECT_LT(std::abs(result.info["initial_volume_error"].get<double>()), 1e-12);
+    EXPECT_NEAR(result.history.at("thinnest_sight_mm").front(), 600.0, 1e-9);
+    const auto& discharged = result.history.at("discharged_fraction");
+    EXPECT_EQ(discharged.front(), 0.0);
+    EXPECT_NEAR(discharged.back(), 0.159, 0.03) << model;  // measured; a guard
+    // Energy comes from falling only.
+    EXPECT_LT(result.history.at("kinetic_energy_J").back(),
+              result.history.at("potential_energy_J").front() -
+                  result.history.at("potential_energy_J").back() + 30.0);
+  }
+}
+
+TEST_F(PlugIn, AStraightShaftWithoutFrictionFallsFreely) {
+  const auto result = run(scenes::load_scene(
+      "mix-a-vfunnel-sf0", {{"foam.cell=0.02", "time.end=0.2", "geometry.top_width=0.065", "walls.base=slip"},
+                            scenes::Model::elasto_viscoplastic}));
+  const double fallen = 0.5 * 9.81 * 0.2 * 0.2;
+  EXPECT_NEAR(result.history.at("discharged_fraction").back(), fallen / 0.6, 0.05 * fallen / 0.6);
+}
+
 /// Two implementations of each law: OpenFOAM's, given a table or a capped viscosity, and the plug-in's.
 TEST_F(PlugIn, AgreesWithOpenFoamsOwnLaws) {
   for (const char* model : {"papanastasiou", "bi-viscous"}) {

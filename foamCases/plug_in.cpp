@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "foamCases/vessel_mesh.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::foam {
@@ -18,8 +19,8 @@ namespace {
 constexpr const char* library = "libflowrestRheology.so";
 
 std::string law(const Scene& scene) {
-  return fmt::format("model {}{}{}", scenes::to_string(scene.material.model),
-                     scene.thixotropy ? " with [thixotropy]" : "",
+  return fmt::format("kind {}, model {}{}{}", scenes::to_string(scene.kind),
+                     scenes::to_string(scene.material.model), scene.thixotropy ? " with [thixotropy]" : "",
                      scene.base.law == scenes::Wall::friction ? " on walls with friction" : "");
 }
 
@@ -49,7 +50,10 @@ Scene settled(Scene scene, bool plug_in) {
 }
 
 bool needs_plug_in(const Scene& scene) {
-  return scene.base.law == scenes::Wall::friction || scene.material.model == Model::elasto_viscoplastic ||
+  // What is mended where cells lean is mended by the plug-in.
+  const bool leans = scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel;
+  return leans || scene.base.law == scenes::Wall::friction ||
+         scene.material.model == Model::elasto_viscoplastic ||
          (scene.thixotropy && scene.material.model != Model::newtonian);
 }
 
@@ -61,7 +65,8 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
         "{}: {}: OpenFOAM has nothing such of its own, but foam.laws is built-in; allowed: plug-in or best",
         scene.path.string(), law(scene)));
   }
-  if (scene.material.model == Model::newtonian && !needed) return std::nullopt;
+  // It has no Newtonian law, but vessels' shear rates are read off by it.
+  if (scene.material.model == Model::newtonian && !needed && !is_vessel(scene)) return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)
     throw runs::MissingProgram(fmt::format(

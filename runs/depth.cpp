@@ -72,6 +72,23 @@ double spread(std::span<const double> radius, std::span<const double> depth, dou
   return 0.0;
 }
 
+double front(std::span<const double> centre, std::span<const double> depth, double length) {
+  constexpr double front_depth = 0.003;
+  if (!depth.empty() && depth.back() > front_depth) return length;
+  for (std::size_t i = depth.size(); i-- > 1;)
+    if (depth[i - 1] > front_depth)
+      return std::lerp(centre[i - 1], centre[i], (depth[i - 1] - front_depth) / (depth[i - 1] - depth[i]));
+  return 0.0;
+}
+
+double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd end, double length) {
+  const auto bins =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(length / bin_width)), 1, depth.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < bins; ++i) sum += depth[end == ChannelEnd::last ? depth.size() - 1 - i : i];
+  return sum / static_cast<double>(bins);
+}
+
 double centre_depth(std::span<const double> radius, std::span<const double> depth) {
   const std::size_t count = std::min(radius.size(), depth.size());
   if (count == 0) return 0.0;

@@ -40,4 +40,12 @@ double spread(std::span<const double> radius, std::span<const double> depth, dou
 /// from its centre; the innermost ring alone holds so few particles that it says more of where they were put.
 double centre_depth(std::span<const double> radius, std::span<const double> depth);
 
+/// Where the depth over equal bins along a channel falls through 3 mm for the last time, interpolated between
+/// their centres; the channel's length where the last bin is deeper. m
+double front(std::span<const double> centre, std::span<const double> depth, double length);
+
+/// Mean of the first or the last depths of a channel over about `length`, one bin at least, m.
+enum class ChannelEnd { first, last };
+double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd, double length = 0.02);
+
 }  // namespace flowrest::runs

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scenes/names.h"
 #include "scenes/step_limits.h"
@@ -182,11 +183,18 @@ void check_dam_break(const Case& c) {
 
 /// What OpenFOAM cannot do of a scene.
 void check_foam_can(const Case& c) {
-  if (!c.usable({"runs.foam"}) || c.scene().runs.foam.empty()) return;
-  if (c.scene().kind != Kind::slump && c.scene().kind != Kind::duct)
-    c.fault("runs.foam", fmt::format("runs.foam names a run, but OpenFOAM has no case of a {} yet; allowed: "
-                                     "runs.foam = [] for it",
-                                     to_string(c.scene().kind)));
+  if (!c.usable({"runs.foam", "geometry.dimension"}) || c.scene().runs.foam.empty()) return;
+  std::optional<Dimension> allowed;
+  if (c.scene().kind == Kind::l_box) allowed = Dimension::half;
+  if (c.scene().kind == Kind::v_funnel) allowed = Dimension::quarter;
+  if (c.scene().kind == Kind::dam_break) allowed = Dimension::plane;
+  if (!allowed || c.scene().geometry.dimension == *allowed) return;
+  c.fault(
+      "runs.foam",
+      fmt::format("runs.foam names a run, but OpenFOAM's case of a {} has the dimension {}, not {}; allowed: "
+                  "runs.foam = [], or geometry.dimension = \"{}\"",
+                  to_string(c.scene().kind), to_string(*allowed), to_string(c.scene().geometry.dimension),
+                  to_string(*allowed)));
 }
 
 void check_models(const Case& c) {

@@ -151,34 +151,7 @@ Measures Gauges::measure_duct(Solver& solver) const {
   return m;
 }
 
-namespace {
-
-/// Depth at which a front is seen, as of a slump's spread. m
-constexpr double front_depth = 0.003;
-
-/// Where the depth over equal bins falls through the front's for the last time, interpolated; the channel's
-/// end where the last bin is deeper. m
-double front_of(const std::vector<double>& centre, const std::vector<double>& depth, double length) {
-  if (!depth.empty() && depth.back() > front_depth) return length;
-  for (std::size_t i = depth.size(); i-- > 1;)
-    if (depth[i - 1] > front_depth)
-      return std::lerp(centre[i - 1], centre[i], (depth[i - 1] - front_depth) / (depth[i - 1] - depth[i]));
-  return 0.0;
-}
-
-/// Mean of the first or the last depths over about `length`, m.
-double mean_depth(const std::vector<double>& depth, double width, double length, bool last) {
-  const auto n =
-      std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(length / width)), 1, depth.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) sum += depth[last ? depth.size() - 1 - i : i];
-  return sum / static_cast<double>(n);
-}
-
-}  // namespace
-
 Measures Gauges::measure_channel(Solver& solver) const {
-  constexpr double gauge_length = 0.02;  // m over which the depth at an end is taken
   Sums sums(scene_, factor_);
   const bool box = scene_.kind == scenes::Kind::l_box;
   const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
@@ -204,10 +177,10 @@ Measures Gauges::measure_channel(Solver& solver) const {
     m.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing);
     m.value.push_back(factor_ * volume[i] / (spacing * width));
   }
-  m.front = front_of(m.coordinate, m.value, length) - begin;
+  m.front = runs::front(m.coordinate, m.value, length) - begin;
   m.front_mass_995 = quantile(places, 0.995) - begin;
-  m.end_height = mean_depth(m.value, spacing, gauge_length, true);
-  m.start_height = mean_depth(m.value, spacing, gauge_length, false);
+  m.end_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::last);
+  m.start_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::first);
   return m;
 }
 

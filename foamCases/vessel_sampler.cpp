@@ -1,0 +1,122 @@
+#include "foamCases/vessel_sampler.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "foamCases/vessel_mesh.h"
+
+namespace flowrest::foam {
+
+namespace {
+
+constexpr double volume_bound = 0.1;  // relative; a bounded phase fraction keeps the volume to 1e-6
+
+}  // namespace
+
+VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
+                             bool shear_rates)
+    : Sampler(scene, std::move(fields), writer), gauge_(scene), shear_rates_(shear_rates) {
+  std::vector<std::string> columns{"time_s"};
+  const auto add = [&](std::initializer_list<std::string> more) { columns.insert(columns.end(), more); };
+  if (is_funnel()) {
+    add({"discharged_fraction", "thinnest_sight_mm"});
+  } else {
+    add({"front_mm", "front_mass_995_mm", "end_height_mm", "start_height_mm"});
+  }
+  add({"volume_m3", "kinetic_energy_J", "potential_energy_J"});
+  if (shear_rates_) add({"shear_rate_p99_1_s"});
+  add({"base_shear_rate_p99_1_s", "initial_residual_U", "courant_max", "time_step_s", "volume_error"});
+  if (thixotropic()) add({"flocculation_mean"});
+  writer.history_columns(columns);
+}
+
+void VesselSampler::sample(double time, const ReadField& read) {
+  VesselFields fields{read("alpha.concrete", 1), read("U", 3), {}};
+  if (shear_rates_ && time > 0.0) fields.shear_rate = read("shearRate", 1);
+  if (thixotropic()) flocculation_ = gauge_.mean_over_concrete(fields.fraction, flocculation(time, read));
+  now_ = gauge_.measure(fields);
+  time_ = time;
+  if (time == 0.0) first_volume_ = now_.volume;
+  largest_volume_error_ = std::max(largest_volume_error_, std::abs(volume_error()));
+  if (history_is_due(time)) write_history(time);
+  if (profile_is_due(time)) writer().profile(time, now_.place, now_.depth);
+}
+
+double VesselSampler::discharged() const { return 1.0 - now_.over_outlet / first_volume_; }
+
+double VesselSampler::volume_error() const { return is_funnel() ? 0.0 : now_.volume / first_volume_ - 1.0; }
+
+double VesselSampler::shear_rate() const { return std::max(now_.shear_rate_p99, now_.base_shear_rate_p99); }
+
+void VesselSampler::write_history(double time) {
+  const SolverStep steps = since_last_row(time);
+  std::vector<double> row{time};
+  const auto add = [&](std::initializer_list<double> more) { row.insert(row.end(), more); };
+  if (is_funnel()) {
+    add({discharged(), 1e3 * now_.thinnest_over_outlet});
+  } else {
+    add({1e3 * now_.front, 1e3 * now_.front_mass_995, 1e3 * now_.end_height, 1e3 * now_.start_height});
+  }
+  add({now_.volume, now_.kinetic_energy, now_.potential_energy});
+  if (shear_rates_) add({now_.shear_rate_p99});
+  add({now_.base_shear_rate_p99, steps.initial_residual_u, steps.courant, steps.time_step, volume_error()});
+  if (thixotropic()) add({flocculation_});
+  writer().history(row);
+}
+
+std::string VesselSampler::progress() const {
+  return is_funnel() ? fmt::format("discharged {:.1f} %", 100.0 * discharged())
+                     : fmt::format("front {:.1f} mm", 1e3 * now_.front);
+}
+
+std::string VesselSampler::fault() const {
+  if (!(largest_volume_error_ < volume_bound) || (is_funnel() && !(discharged() > -volume_bound)))
+    return fmt::format("the volume of concrete is off by {:.0f} % at {:.4g} s: the flow diverges",
+                       100.0 * std::max(largest_volume_error_, -discharged()), time_);
+  const double gravity = scene().forces.gravity;
+  const double bound = scene().material.density * gravity * initial_volume(scene()) * scene().body_height();
+  if (gravity > 0.0 && !(now_.kinetic_energy < bound))
+    return fmt::format(
+        "the concrete moves with {:.3g} J at {:.4g} s, and all its weight can give is {:.3g} J: the flow "
+        "diverges",
+        now_.kinetic_energy, time_, bound);
+  return "";
+}
+
+void VesselSampler::continue_from(const runs::Table& history) {
+  Sampler::continue_from(history);
+  if (history.rows() == 0) return;
+  first_volume_ = history.at("volume_m3").front();
+  for (const double error : history.at("volume_error"))
+    largest_volume_error_ = std::max(largest_volume_error_, std::abs(error));
+  time_ = time();
+  now_.volume = history.at("volume_m3").back();
+  if (is_funnel()) {
+    now_.over_outlet = first_volume_ * (1.0 - history.at("discharged_fraction").back());
+    now_.thinnest_over_outlet = 1e-3 * history.at("thinnest_sight_mm").back();
+  } else {
+    now_.front = 1e-3 * history.at("front_mm").back();
+    now_.end_height = 1e-3 * history.at("end_height_mm").back();
+    now_.start_height = 1e-3 * history.at("start_height_mm").back();
+  }
+}
+
+nlohmann::ordered_json VesselSampler::summary() const {
+  nlohmann::ordered_json gauges;
+  if (is_funnel()) {
+    gauges = {{"discharged_fraction", discharged()}, {"thinnest_sight_mm", 1e3 * now_.thinnest_over_outlet}};
+  } else {
+    gauges = {{"front_mm", 1e3 * now_.front},
+              {"end_height_mm", 1e3 * now_.end_height},
+              {"start_height_mm", 1e3 * now_.start_height},
+              {"volume_error", largest_volume_error_}};
+  }
+  gauges["initial_volume_error"] = first_volume_ / initial_volume(scene()) - 1.0;
+  return gauges;
+}
+
+}  // namespace flowrest::foam
