@@ -154,6 +154,9 @@ const char* wall(const Scene& scene) { return scene.base.law == scenes::Wall::sl
 
 /// The velocity's condition on a wall as a patch takes it in.
 std::string wall_condition(const Scene& scene) {
+  // OpenFOAM's own slip is wrong on walls that lean, as forces are (rheology/inclined_cells.h).
+  const bool leans = scene.kind == scenes::Kind::v_funnel || scene.kind == scenes::Kind::l_box;
+  if (scene.base.law == scenes::Wall::slip && leans) return "{ type coulombFriction; friction 0; }";
   if (scene.base.law != scenes::Wall::friction) return fmt::format("{{ type {}; }}", wall(scene));
   return fmt::format("{{ type coulombFriction; friction {}; }}", scene.base.friction);
 }

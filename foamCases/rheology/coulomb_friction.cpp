@@ -83,6 +83,20 @@ void coulombFrictionFvPatchVectorField::updateCoeffs() {
   partialSlipFvPatchVectorField::updateCoeffs();
 }
 
+/// Face by face: the base's product of a tensor with a temporary vector is written over while it is made on
+/// walls that lean (see inclinedCells).
+void coulombFrictionFvPatchVectorField::evaluate(const Pstream::commsTypes) {
+  if (!updated()) updateCoeffs();
+  vectorField along(patchInternalField());
+  const vectorField normal(patch().nf());
+  forAll(along, face) {
+    const vector inside = along[face];
+    along[face] = (1.0 - valueFraction()[face]) * (inside - normal[face] * (normal[face] & inside));
+  }
+  vectorField::operator=(along);
+  fvPatchVectorField::evaluate();
+}
+
 tmp<vectorField> coulombFrictionFvPatchVectorField::snGradTransformDiag() const {
   if (implicit_.size() != patch().size()) return partialSlipFvPatchVectorField::snGradTransformDiag();
   const scalarField held(implicit_ * valueFraction());

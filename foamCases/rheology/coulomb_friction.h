@@ -35,6 +35,7 @@ class coulombFrictionFvPatchVectorField : public partialSlipFvPatchVectorField {
   }
 
   void updateCoeffs() override;
+  void evaluate(const Pstream::commsTypes comms = Pstream::commsTypes::blocking) override;
   tmp<vectorField> snGradTransformDiag() const override;
   void write(Ostream&) const override;
 
