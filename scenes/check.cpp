@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "scenes/names.h"
 #include "scenes/step_limits.h"
@@ -179,22 +178,6 @@ void check_dam_break(const Case& c) {
                 "the column of {:g} m does not fit the tank of {:g} m; allowed: at most the tank's length",
                 dam.column_length, dam.tank_length));
   check_cell(c, "mpm.cell", c.scene().mpm.cell, "column", std::min(dam.column_length, dam.column_height));
-}
-
-/// What OpenFOAM cannot do of a scene.
-void check_foam_can(const Case& c) {
-  if (!c.usable({"runs.foam", "geometry.dimension"}) || c.scene().runs.foam.empty()) return;
-  std::optional<Dimension> allowed;
-  if (c.scene().kind == Kind::l_box) allowed = Dimension::half;
-  if (c.scene().kind == Kind::v_funnel) allowed = Dimension::quarter;
-  if (c.scene().kind == Kind::dam_break) allowed = Dimension::plane;
-  if (!allowed || c.scene().geometry.dimension == *allowed) return;
-  c.fault(
-      "runs.foam",
-      fmt::format("runs.foam names a run, but OpenFOAM's case of a {} has the dimension {}, not {}; allowed: "
-                  "runs.foam = [], or geometry.dimension = \"{}\"",
-                  to_string(c.scene().kind), to_string(*allowed), to_string(c.scene().geometry.dimension),
-                  to_string(*allowed)));
 }
 
 void check_models(const Case& c) {
@@ -395,7 +378,6 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
   if (draft.scene.kind == Kind::l_box) check_l_box(c);
   if (draft.scene.kind == Kind::v_funnel) check_v_funnel(c);
   if (draft.scene.kind == Kind::dam_break) check_dam_break(c);
-  check_foam_can(c);
   check_models(c);
   check_foam_runs(c);
   check_thixotropy(c);

@@ -163,11 +163,6 @@ const Wrong wrong_scenes[] = {
     {"FunnelThatWidensDownwards", v_funnel_text, "[time]", "[geometry]\noutlet_width = 0.6\n[time]",
      "wrong.toml:10:16: geometry.outlet_width is 0.6 m, wider than the top (0.515 m); allowed: at most the "
      "top's width"},
-    {"WholeFunnelInOpenFoam", v_funnel_text, "[time]",
-     "[runs]\nfoam = [\"newtonian\"]\n[geometry]\ndimension = \"full\"\n[time]",
-     "wrong.toml:10:8: runs.foam names a run, but OpenFOAM's case of a v-funnel has the dimension quarter, "
-     "not "
-     "full; allowed: runs.foam = [], or geometry.dimension = \"quarter\""},
     {"ColumnLongerThanItsTank", dam_text, "[time]", "[geometry]\ncolumn_length = 2.0\n[time]",
      "wrong.toml:10:17: the column of 2 m does not fit the tank of 1.61 m; allowed: at most the tank's "
      "length"},
