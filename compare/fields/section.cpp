@@ -237,7 +237,7 @@ std::optional<report::Section> section_of(const Comparison& comparison, const Cu
         "A level section, to scale: where bars have sheared the concrete, streaks of broken flocs (low λ) "
         "trail behind "
         "them. A half is shown from its plane of symmetry on.";
-    section.z.name = "distance across";
+    section.z.name = "across";
     section.to_scale = true;
     // What the streaks are seen by comes first.
     std::stable_partition(section.quantities.begin(), section.quantities.end(),

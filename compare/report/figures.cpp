@@ -362,11 +362,15 @@ void add_section(Script& script, const Page& page, const Section& section) {
     const double time = times[static_cast<std::size_t>(i)];
     rows += panels_at(script, page, section, time, height_at(section, time), columns, i == 0, i + 1 == lines);
   }
+  // Wide enough for the title, and beside the first column for the time and the axis.
+  constexpr int narrowest = 720, beside = 80;
+  const int width = std::max(narrowest, 230 * columns);
   const std::string commands = fmt::format(
-      "set multiplot layout {},{} title {} margins 0.09,0.985,0.24,0.84 spacing 0.045,0.07\n{}unset "
+      "set multiplot layout {},{} title {} margins {:.3f},0.985,0.24,0.84 spacing 0.045,0.07\n{}unset "
       "multiplot",
-      lines, columns, quoted(page.title + ": " + section.title), rows);
-  draw(script, section.id, commands, std::max(480, 230 * columns), 180 + 150 * lines);
+      lines, columns, quoted(page.title + ": " + section.title),
+      std::max(0.09, static_cast<double>(beside) / width), rows);
+  draw(script, section.id, commands, width, 180 + 150 * lines);
 }
 
 fs::path program_path(const std::string& name, const std::string& package) {
