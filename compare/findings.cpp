@@ -201,13 +201,20 @@ std::string square_sentence(const Comparison& comparison) {
                                                  : fmt::format("{}{:.0f} {}", value < 0.0 ? "−" : "",
                                                                std::abs(gauge.shown * value), gauge.unit);
   };
-  return fmt::format(
+  const auto walls = [&](const std::optional<std::size_t>& run) {
+    return !comparison.runs[*run].walls_differ.empty();
+  };
+  const bool walls_too = walls(square.mpm_solid) || walls(square.mpm_fluid) || walls(square.foam_solid) ||
+                         walls(square.foam_fluid);
+  std::string text = fmt::format(
       "Of the {} between {} and {} at {}, the law makes {} and the discretisation {}; {} more can be given "
       "to neither, and "
       "scatter and the reading of the edge blur it by {}.",
       amount(at.total), comparison.runs[*square.foam_fluid].label, comparison.runs[*square.mpm_solid].label,
       words::time(at.time), amount(at.law), amount(at.discretisation), amount(std::abs(at.interaction)),
       amount(at.noise));
+  if (walls_too) text += " What the walls do that differ counts as discretisation here.";
+  return text;
 }
 
 /// Between which spreads the runs end.
