@@ -5,6 +5,7 @@
 
 #include "foamCases/vessel_gauge.h"
 #include "foamCases/vessel_mesh.h"
+#include "scenes/cost.h"
 #include "scenes/scene.h"
 
 namespace flowrest::foam {
@@ -44,6 +45,17 @@ TEST(BlockMesh, CellsFollowTheOrderOfBlockMeshAndFillTheBlock) {
   EXPECT_THAT(text, HasSubstr("hex (1 8 9 2 5 10 11 6) (1 1 3) simpleGrading"));
   EXPECT_THAT(text, HasSubstr("floor { type wall; faces ( (0 3 2 1) (1 2 9 8) ); }"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("none")));
+}
+
+/// The estimate lies in another room, which knows no mesh.
+TEST(Cost, CountsAVesselsCellsToAFifth) {
+  for (const char* name : {"mix-a-lbox-sf0", "mix-a-vfunnel-sf0", "dam-break"}) {
+    for (const char* cell : {"foam.cell=0.02", "foam.cell=0.01"}) {
+      const scenes::Scene scene = scene_of(name, {cell});
+      const double cells = static_cast<double>(mesh_cells(vessel_mesh(scene)).size());
+      EXPECT_NEAR(scenes::estimate_foam(scene).cells, cells, 0.2 * cells) << name << " " << cell;
+    }
+  }
 }
 
 double volume_where(const scenes::Scene& scene, bool filled) {

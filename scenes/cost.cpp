@@ -15,6 +15,9 @@ constexpr double particle_steps_per_cpu_second_3d = 4e6;
 /// Cell-steps per CPU second of interFoam with the plug-in: 16,407 steps of 1,710 cells took 361 s.
 constexpr double cell_steps_per_cpu_second = 7e4;
 
+/// Cells that the mesh of an L-box has more than its cell asks for, along and across, for its bars.
+constexpr double cells_of_bars_along = 4.0, cells_of_bars_across = 5.0;
+
 /// Memory held for one particle and one occupied cell in double precision, and for one cell of an OpenFOAM
 /// mesh; bytes.
 constexpr double bytes_per_particle = 400.0;
@@ -23,6 +26,43 @@ constexpr double bytes_per_mesh_cell = 2000.0;
 /// Memory of a program that has nothing to do yet; bytes.
 constexpr double bytes_of_solver = 2e7;
 constexpr double bytes_of_interfoam = 1e8;
+
+/// Cells of the mesh of an OpenFOAM case; of vessels to some 20 %, as a mesh is laid out by its own room.
+double mesh_cells(const Scene& scene) {
+  const double cell = scene.foam.cell;
+  const auto along = [cell](double length) { return std::max(1.0, std::round(length / cell)); };
+  switch (scene.kind) {
+    case Kind::duct:
+      return std::round(scene.duct().height / cell);
+    case Kind::slump: {
+      const SlumpGeometry& shape = scene.slump();
+      // The usual four rows in place of the lowest.
+      const double rows =
+          std::ceil(shape.domain_height / cell) + (scene.foam.base_rows == 0 ? 4 : scene.foam.base_rows) - 1;
+      const double radius = std::ceil(shape.domain_radius / cell);
+      return rows * (scene.geometry.dimension == Dimension::quarter ? radius * radius : radius);
+    }
+    case Kind::l_box: {
+      const LBoxGeometry& box = scene.l_box();
+      const double bars = box.rebars > 0 ? 1.0 : 0.0;
+      const double channel =
+          (along(box.length()) + bars * cells_of_bars_along) * (along(box.channel_height) + 2.0);
+      const double reservoir =
+          along(box.reservoir_length) * along(box.reservoir_height - box.channel_height);
+      return (along(0.5 * box.width) + bars * cells_of_bars_across) * (channel + reservoir);
+    }
+    case Kind::v_funnel: {
+      const VFunnelGeometry& funnel = scene.v_funnel();
+      return along(0.5 * std::sqrt(funnel.outlet_width * funnel.top_width)) * along(0.5 * funnel.depth) *
+             (along(funnel.height()) + 5.0);
+    }
+    case Kind::dam_break: {
+      const DamBreakGeometry& dam = scene.dam_break();
+      return along(dam.tank_length) * along(2.0 * dam.column_height);
+    }
+  }
+  return 0.0;
+}
 
 }  // namespace
 
@@ -39,18 +79,8 @@ Cost mpm_cost(const Scene& scene) {
 }
 
 FoamEstimate estimate_foam(const Scene& scene) {
-  const double cell = scene.foam.cell;
   FoamEstimate estimate;
-  if (scene.kind == Kind::duct) {
-    estimate.cells = std::round(scene.duct().height / cell);
-  } else if (scene.kind == Kind::slump) {
-    const SlumpGeometry& shape = scene.slump();
-    // The usual four rows in place of the lowest.
-    const double rows =
-        std::ceil(shape.domain_height / cell) + (scene.foam.base_rows == 0 ? 4 : scene.foam.base_rows) - 1;
-    const double along = std::ceil(shape.domain_radius / cell);
-    estimate.cells = rows * (scene.geometry.dimension == Dimension::quarter ? along * along : along);
-  }
+  estimate.cells = mesh_cells(scene);
   estimate.step = largest_foam_step(scene);
   estimate.steps = std::max(1.0, std::ceil(scene.time.end / estimate.step));
   estimate.cost.memory = bytes_of_interfoam + bytes_per_mesh_cell * estimate.cells;

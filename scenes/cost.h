@@ -14,7 +14,7 @@ struct Cost {
 /// Of one run with the material point solver.
 Cost mpm_cost(const Scene&);
 
-/// The OpenFOAM run of a slump: a wedge one cell thick.
+/// Mesh and steps of an OpenFOAM run: at least these steps, as the Courant number may ask for smaller ones.
 struct FoamEstimate {
   double cells = 0.0;
   double steps = 0.0;

@@ -8,7 +8,6 @@
 #include "compare/words.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
-#include "scenes/cost.h"
 #include "studies/accuracy.h"
 #include "studies/results.h"
 #include "studies/validation/validation.h"
@@ -27,11 +26,6 @@ struct StudyOptions {
   bool list = false, report_only = false, keep = false, json = false;
 };
 
-double expected_cpu(const Point& point) {
-  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost.cpu_seconds
-                                      : scenes::mpm_cost(*point.scene).cpu_seconds;
-}
-
 /// What would be run, and for how long.
 void print_list(const std::vector<Point>& points) {
   double total = 0.0;
@@ -41,11 +35,11 @@ void print_list(const std::vector<Point>& points) {
       fmt::print("{}: refused: {}\n", point.label, point.refused);
       continue;
     }
-    const double cpu = expected_cpu(point);
+    const double cpu = expected_cost(point).cpu_seconds;
     if (seen.insert(point.id).second) total += cpu;
-    fmt::print("{}: at most {} of CPU\n", point.label, compare::words::duration(cpu));
+    fmt::print("{}: about {} of CPU\n", point.label, compare::words::duration(cpu));
   }
-  fmt::print("{} runs, at most {} of CPU, less where they come to rest before their end\n", seen.size(),
+  fmt::print("{} runs, about {} of CPU, less where they come to rest before their end\n", seen.size(),
              compare::words::duration(total));
 }
 

@@ -256,6 +256,11 @@ std::string to_string(Reference::Kind kind) {
   throw std::logic_error("a reference without a name");
 }
 
+scenes::Cost expected_cost(const Point& point) {
+  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost
+                                      : scenes::mpm_cost(*point.scene);
+}
+
 std::string to_string(Point::Role role) {
   switch (role) {
     case Point::Role::point:

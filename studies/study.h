@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/cost.h"
 #include "scenes/scene.h"
 #include "scenes/value.h"
 
@@ -122,6 +123,9 @@ struct Point {
   std::string refused;                 ///< why
 };
 std::string to_string(Point::Role);
+
+/// What a point that has a scene is expected to cost; less where it comes to rest before its end.
+scenes::Cost expected_cost(const Point&);
 
 /// Twelve letters and digits that stand for a text in the name of a folder: the same on every machine and in
 /// every version.

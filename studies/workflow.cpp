@@ -19,7 +19,6 @@
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
-#include "scenes/cost.h"
 
 namespace flowrest::studies {
 
@@ -37,14 +36,9 @@ std::vector<const Point*> runs_of(const std::vector<Point>& points) {
   return runs;
 }
 
-scenes::Cost cost_of(const Point& point) {
-  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost
-                                      : scenes::mpm_cost(*point.scene);
-}
-
 Json job_of(const Study& study, const Point& point) {
   constexpr double mebibyte = 1048576.0, minute = 60.0;
-  const scenes::Cost cost = cost_of(point);
+  const scenes::Cost cost = expected_cost(point);
   const int threads = point.solver == Solver::mpm ? std::max(1, point.scene->mpm.threads) : 1;
   return {{"id", point.id},
           {"label", point.label},

@@ -5,7 +5,6 @@
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
 #include "runs/run_directory.h"
-#include "scenes/cost.h"
 #include "studies/validation/validation.h"
 
 namespace flowrest::studies::validation {
@@ -21,23 +20,18 @@ struct Arguments {
   bool list = false, report_only = false, json = false;
 };
 
-double expected_cpu(const Point& point) {
-  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost.cpu_seconds
-                                      : scenes::mpm_cost(*point.scene).cpu_seconds;
-}
-
 /// What would be run, and for how long.
 void print_list(const std::vector<SceneWanted>& wanted, const Folder& folder) {
   double left = 0.0;
   for (const SceneWanted& scene : wanted)
     for (const Wanted& run : scene.runs) {
       const bool there = outcome_of(folder, run.point).ending != Ending::missing;
-      const double cpu = expected_cpu(run.point);
+      const double cpu = expected_cost(run.point).cpu_seconds;
       left += there ? 0.0 : cpu;
       fmt::print("{}: {}\n", run.point.label,
-                 there ? "is there" : fmt::format("at most {} of CPU", compare::words::duration(cpu)));
+                 there ? "is there" : fmt::format("about {} of CPU", compare::words::duration(cpu)));
     }
-  fmt::print("At most {} of CPU to go, less where runs come to rest before their end\n",
+  fmt::print("About {} of CPU to go, less where runs come to rest before their end\n",
              compare::words::duration(left));
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "runs/run_directory.h"
 #include "studies/validation/validation.h"
@@ -17,11 +18,19 @@ std::string version() {
          (made_by.value("git_dirty", false) ? "-modified" : "");
 }
 
+/// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them across.
+double coarse_cell(const scenes::Scene& scene, double cell, double coarsening) {
+  if (scene.kind != scenes::Kind::duct) return cell * coarsening;
+  const double height = scene.duct().height;
+  return height / std::max(1.0, std::round(height / (cell * coarsening)));
+}
+
 Wanted wanted_run(const std::string& name, const scenes::Scene& scene, Solver solver, scenes::Model model,
                   bool coarse, const Options& options) {
   Wanted wanted{solver, model, coarse};
   const bool mpm = solver == Solver::mpm;
-  wanted.cell = (mpm ? scene.mpm.cell : scene.foam.cell) * (coarse ? options.coarsening : 1.0);
+  wanted.cell = mpm ? scene.mpm.cell : scene.foam.cell;
+  if (coarse) wanted.cell = coarse_cell(scene, wanted.cell, options.coarsening);
   scenes::Overrides overrides;
   // Runs share the cores between them; one thread each wastes none. What the user sets comes last and counts.
   overrides.set = {"mpm.threads=1"};

@@ -96,6 +96,19 @@ TEST(Published, EveryRowIsOfASceneThatThereIs) {
     EXPECT_NO_THROW(scenes::load_scene(item.scene)) << item.scene;
 }
 
+TEST_F(ValidationTest, EveryPaperSceneCanBeRunAtBothResolutions) {
+  options.scenes.clear();
+  options.solver.reset();
+  for (const SceneWanted& scene : plan(options))
+    for (std::size_t i = 0; i + 1 < scene.runs.size(); i += 2) {
+      const double ratio = scene.runs[i + 1].cell / scene.runs[i].cell;
+      EXPECT_NEAR(ratio, options.coarsening, 0.05 * options.coarsening) << scene.name;
+      EXPECT_GT(expected_cost(scene.runs[i].point).cpu_seconds,
+                expected_cost(scene.runs[i + 1].point).cpu_seconds)
+          << scene.runs[i].point.label;
+    }
+}
+
 TEST_F(ValidationTest, AMalformedTableIsRefusedWithItsLine) {
   const char* before = std::getenv("FLOWREST_SCENES");
   const std::string kept = before ? before : "";
