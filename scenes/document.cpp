@@ -50,14 +50,14 @@ Value to_value(const toml::node& node, const std::string& source, int depth = 0)
     for (const toml::node& item : *array) items.push_back(to_value(item, source, depth + 1));
     value.content = std::move(items);
   } else if (const auto* table = node.as_table(); table && depth == 0) {
-    Foreign entries{foreign_name(node)};
+    Foreign entries{foreign_name(node), {}, {}};
     for (auto&& [name, item] : *table) {
       entries.names.emplace_back(name.str());
       entries.values.push_back(to_value(item, source, depth + 1));
     }
     value.content = std::move(entries);
   } else {
-    value.content = Foreign{foreign_name(node)};
+    value.content = Foreign{foreign_name(node), {}, {}};
   }
   return value;
 }

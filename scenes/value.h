@@ -24,7 +24,7 @@ struct Value;
 struct Foreign {
   std::string what;
   std::vector<std::string> names{};  ///< of a table's entries, in their order
-  std::vector<Value> values{};
+  std::vector<Value> values;
 };
 
 /// A value as given, with its place.
