@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "runs/folder.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
@@ -242,7 +243,7 @@ int run_accurately(const std::string& named, const RunCommandOptions& options) {
       compare::words::duration(choice.expected_cpu), choice.twin_cell);
   std::fflush(stdout);
   const fs::path folder = fs::path(options.output) / scene.name / "accuracy";
-  fs::create_directories(folder / "logs");
+  runs::make_folder(folder / "logs");
   std::deque<Job> jobs = {accuracy_job(named, folder / "mpm", options, choice.set),
                           accuracy_job(named, folder / "mpm-coarser-twin", options, choice.twin_set)};
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -257,7 +258,7 @@ int run_scene(const std::string& named, const RunCommandOptions& options) {
   const scenes::Scene scene = scenes::load_scene(named, overrides);
   const fs::path folder = fs::path(options.output) / scene.name;
   const fs::path logs = folder / "logs";
-  fs::create_directories(logs);
+  runs::make_folder(logs);
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int at_once = options.jobs > 0 ? options.jobs : cores;
   auto jobs = jobs_of(scene, named, folder, options, at_once > 1);

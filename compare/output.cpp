@@ -9,6 +9,7 @@
 #include "compare/fields/section.h"
 #include "compare/measures/gauges.h"
 #include "compare/report/figures.h"
+#include "runs/folder.h"
 
 namespace flowrest::compare {
 
@@ -260,11 +261,7 @@ Json to_json(const Comparison& comparison) {
 }
 
 void write_comparison(const Comparison& comparison, const std::filesystem::path& report) {
-  std::error_code error;
-  std::filesystem::create_directories(report, error);
-  if (error || !std::filesystem::is_directory(report))
-    throw runs::RunError(fmt::format("{}: cannot be made a folder: {}", report.string(),
-                                     error ? error.message() : "a file of that name is in the way"));
+  runs::make_folder(report);
   if (std::filesystem::exists(report / "run.json"))
     throw runs::RunError(fmt::format("{}: is a run; name another folder for the report", report.string()));
   const Json json = to_json(comparison);

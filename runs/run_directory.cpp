@@ -15,6 +15,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "runs/folder.h"
+
 namespace flowrest::runs {
 
 namespace fs = std::filesystem;
@@ -215,11 +217,7 @@ void write_atomically(const fs::path& path, const std::string& text) {
 
 RunWriter::RunWriter(const fs::path& directory, const scenes::Scene& scene, const std::string& solver)
     : directory_(directory), profile_header_(profile_header(scene.kind)) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error || !fs::is_directory(directory))
-    throw RunError(fmt::format("{}: cannot be made a folder: {}", directory.string(),
-                               error ? error.message() : "a file of that name is in the way"));
+  make_folder(directory);
   if (!fs::is_empty(directory)) {
     std::string problem = "it has no run.json";
     if (!fs::exists(directory / "run.json") || !read_info(directory / "run.json", problem))

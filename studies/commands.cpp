@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compare/words.h"
+#include "runs/folder.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "studies/accuracy.h"
@@ -160,7 +161,7 @@ void add_verify(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "Print no progress");
   command->callback([options, output] {
-    fs::create_directories(*output);
+    runs::make_folder(*output);
     const int code = run_verification(*output, *options);
     if (code != 0) throw CLI::RuntimeError(code);
   });

@@ -16,6 +16,7 @@
 #include <set>
 #include <thread>
 
+#include "runs/folder.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
@@ -113,8 +114,7 @@ std::string tail_of(const fs::path& log) {
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& root) {
-  std::error_code error;
-  fs::create_directories(root, error);
+  runs::make_folder(root);
   const fs::path path = root / ".lock";
   // Not closed on exec: what we start goes on holding the folder if we are killed.
   file_ = open(path.c_str(), O_RDWR | O_CREAT, 0644);

@@ -256,8 +256,50 @@ TEST_F(StudyCommand, AFullDiskEndsARunWithAReasonAndLeavesNoneThatCounts) {
   }
 }
 
+TEST_F(StudyCommand, AFolderThatMayOnlyBeReadIsSaidByEveryCommandAndNothingIsWritten) {
+  // The administrator may write anywhere, unless he gives up that right.
+  const std::string as_anybody = ::geteuid() == 0 ? "setpriv --bounding-set=-dac_override " : "";
+  const auto call = [&](const std::string& arguments, const std::string& prefix) {
+    runs::Process process("/bin/bash", {"-c", "exec " + prefix + "'" + program.string() + "' " + arguments},
+                          folder, folder / "log", {});
+    const auto end = process.wait(longest_wait);
+    EXPECT_TRUE(end) << "it does not come to an end";
+    return end.value_or(runs::ProcessEnd{1, 0, 0.0}).exit_code;
+  };
+  const std::string run = (folder / "whole").string(),
+                    settings = " --set mpm.cell=0.02 --set time.end=0.2 --quiet";
+  ASSERT_EQ(call("mpm roussel-slump" + settings + " -o '" + run + "'", ""), 0) << log();
+  const auto text_of = [&](const fs::path& path) {
+    std::ifstream file(path);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  const std::string before = text_of(fs::path(run) / "run.json");
+  fs::create_directories(folder / "locked");
+  const auto read_only = fs::perms::owner_read | fs::perms::owner_exec;
+  fs::permissions(folder / "locked", read_only);
+  fs::permissions(run, read_only);
+  for (const std::string command :
+       {"mpm roussel-slump --quiet", "exact roussel-slump", "run roussel-slump", "verify --quick --quiet",
+        "study stability --cut quick --quiet", "validate mix-a-slump-sf0 --quiet"}) {
+    EXPECT_EQ(call(command + " -o '" + (folder / "locked" / "out").string() + "'", as_anybody), 2)
+        << command << '\n'
+        << log();
+    EXPECT_NE(log().find("cannot be made a folder: Permission denied"), std::string::npos) << command << '\n'
+                                                                                           << log();
+  }
+  EXPECT_EQ(call("compare '" + run + "' -o '" + (folder / "locked" / "out").string() + "'", as_anybody), 2)
+      << log();
+  EXPECT_TRUE(fs::is_empty(folder / "locked"));
+  // A run that is there stays what it is.
+  EXPECT_NE(call("mpm roussel-slump" + settings + " -o '" + run + "'", as_anybody), 0) << log();
+  EXPECT_EQ(text_of(fs::path(run) / "run.json"), before);
+  EXPECT_EQ(runs::read_run(run).status(), runs::Status::end_time);
+  for (const fs::path& locked : {folder / "locked", fs::path(run)})
+    fs::permissions(locked, fs::perms::owner_all);
+}
+
 TEST_F(StudyCommand, AFolderThatCannotBeWrittenIsSaidAndNothingIsRun) {
   std::ofstream(folder / "out") << "a file in the way";
   EXPECT_EQ(study("out").exit_code, 2);
-  EXPECT_NE(log().find("cannot be written"), std::string::npos) << log();
+  EXPECT_NE(log().find("cannot be made a folder: "), std::string::npos) << log();
 }
