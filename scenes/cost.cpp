@@ -47,8 +47,7 @@ double mesh_cells(const Scene& scene) {
       const double bars = box.rebars > 0 ? 1.0 : 0.0;
       const double channel =
           (along(box.length()) + bars * cells_of_bars_along) * (along(box.channel_height) + 2.0);
-      const double reservoir =
-          along(box.reservoir_length) * along(box.reservoir_height - box.channel_height);
+      const double reservoir = along(box.reservoir_length) * along(box.reservoir_height - box.channel_height);
       return (along(0.5 * box.width) + bars * cells_of_bars_across) * (channel + reservoir);
     }
     case Kind::v_funnel: {

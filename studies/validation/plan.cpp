@@ -18,7 +18,8 @@ std::string version() {
          (made_by.value("git_dirty", false) ? "-modified" : "");
 }
 
-/// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them across.
+/// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them
+/// across.
 double coarse_cell(const scenes::Scene& scene, double cell, double coarsening) {
   if (scene.kind != scenes::Kind::duct) return cell * coarsening;
   const double height = scene.duct().height;
