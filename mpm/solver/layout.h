@@ -53,7 +53,8 @@ struct BlockSums {
 /// What a kernel sees of one occupied block.
 struct BlockView {
   int origin[3] = {0, 0, 0};  ///< first cell, in cells
-  std::uint32_t slot = 0;     ///< its place in the arrays of arenas and nodes
+  std::uint32_t slot = 0;     ///< its place in the array of nodes
+  std::uint32_t arena = 0;    ///< and in that of arenas, which only blocks with particles have
   std::uint32_t first = 0;    ///< of its particles in their arrays, where they lie sorted by cell
   const std::uint32_t* start =
       nullptr;             ///< of each cell's particles, from `first`; cells_per_block + 1 of them
@@ -69,7 +70,7 @@ constexpr std::uint32_t no_slot = 0xffffffffu;
 struct NodeView {
   std::uint32_t slot = 0;
   const std::uint32_t* minus =
-      nullptr;  ///< slots of the occupied blocks at -{0,1} per axis; no_slot where there is none
+      nullptr;  ///< arenas of the occupied blocks at -{0,1} per axis; no_slot where there is none
 };
 
 /// The particles' arrays. Positions are cell-relative, in [0, 1) of the cell, so that small motions are not

@@ -215,11 +215,10 @@ class SolverOf final : public Solver {
     const auto arena_size = static_cast<std::size_t>(power(arena_edge, settings_.dimension)) * values;
     const auto nodes_size = static_cast<std::size_t>(power(block_edge, settings_.dimension)) * values;
     const std::size_t slots = blocks_.slot_count();
-    if (arenas_.size() < slots * arena_size) {
-      const std::size_t room = slots + slots / 4;
-      arenas_ = AlignedArray<T>(room * arena_size);
-      nodes_ = AlignedArray<T>(room * nodes_size);
-    }
+    const std::size_t occupied = blocks_.occupied().size();
+    const auto with_spare = [](std::size_t count) { return count + count / 8; };
+    if (arenas_.size() < occupied * arena_size) arenas_ = AlignedArray<T>(with_spare(occupied) * arena_size);
+    if (nodes_.size() < slots * nodes_size) nodes_ = AlignedArray<T>(with_spare(slots) * nodes_size);
     while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell())
       tile_capacity_ += 32;
     if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {

@@ -75,6 +75,8 @@ void SparseBlocks::refresh_neighbours() {
     if (slots_[i].count() > 0) occupied_.push_back(static_cast<std::uint32_t>(i));
   std::sort(occupied_.begin(), occupied_.end(),
             [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
+  for (std::size_t rank = 0; rank < occupied_.size(); ++rank)
+    slots_[occupied_[rank]].arena = static_cast<std::uint32_t>(rank);
   const int neighbours = 1 << axes();
   for (const std::uint32_t slot : occupied_)
     for (int delta = 0; delta < neighbours; ++delta) {
@@ -85,7 +87,7 @@ void SparseBlocks::refresh_neighbours() {
     for (int delta = 0; delta < neighbours; ++delta) {
       const std::uint32_t from = slot_at(shifted(slot.block, delta, -1));
       slot.minus[static_cast<std::size_t>(delta)] =
-          from != no_slot && slots_[from].count() > 0 ? from : no_slot;
+          from != no_slot && slots_[from].count() > 0 ? slots_[from].arena : no_slot;
     }
 }
 
@@ -329,6 +331,7 @@ BlockView SparseBlocks::view(std::uint32_t slot) {
   BlockView v;
   for (int a = 0; a < axes(); ++a) v.origin[a] = s.block[static_cast<std::size_t>(a)] * block_edge;
   v.slot = slot;
+  v.arena = s.arena;
   v.first = s.first;
   v.start = s.start.data();
   v.plus = s.plus.data();

@@ -98,6 +98,7 @@ class SparseBlocks {
   struct Slot {
     std::array<std::int32_t, 3> block{};  ///< block coordinates
     std::uint32_t first = 0, room = 0;    ///< places
+    std::uint32_t arena = no_slot;        ///< its rank among the occupied blocks
     std::array<std::uint32_t, 65> start{};
     bool touched = false;
     std::uint32_t count_to_come = 0;  ///< particles after the relocation that is planned

@@ -148,7 +148,8 @@ void expect_agreement(SparseBlocks& blocks, const Numbered& numbers, const Brute
   for (const auto& [slot, block] : reached)
     for (int delta = 0; delta < neighbours; ++delta) {
       const auto from = slots.find(shifted(block, delta, -1));
-      ASSERT_EQ(blocks.node_view(slot).minus[delta], from == slots.end() ? no_slot : from->second)
+      ASSERT_EQ(blocks.node_view(slot).minus[delta],
+                from == slots.end() ? no_slot : blocks.view(from->second).arena)
           << "round " << round;
     }
 }

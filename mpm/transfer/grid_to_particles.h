@@ -274,7 +274,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
                        const BlockView& block, T* arenas, const T* nodes, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
   load_arena<T, Dim, Linear>(step, block, nodes, arena);
-  T* remapped = arenas + static_cast<std::size_t>(block.slot) * nodes_per_arena<Dim> * node_values;
+  T* remapped = arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
   for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
   using Momentum = Source<T, Dim, false, record>;
   Tile<T, Dim> tile(block, workspace);

@@ -20,13 +20,13 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
     for (int r = 0; r < records; ++r) sum[r] = Record<T>{};
     for (int delta = 0; delta < (1 << Dim); ++delta) {
       const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
-      const std::uint32_t slot = view.minus[delta];
-      if (slot == no_slot) continue;
+      const std::uint32_t arena = view.minus[delta];
+      if (arena == no_slot) continue;
       const int i = c[0] + di * block_edge, j = c[1] + dj * block_edge, k = c[2] + dk * block_edge;
       if (i >= arena_edge || j >= arena_edge || k >= arena_edge) continue;
       const T* from =
           arenas +
-          (static_cast<std::size_t>(slot) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * node_values;
+          (static_cast<std::size_t>(arena) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * node_values;
       for (int r = 0; r < records; ++r) sum[r] += record_at(from + r * record);
     }
     const T mass = sum[0][0];

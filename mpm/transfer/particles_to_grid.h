@@ -145,7 +145,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
   constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
   constexpr int arena_values = nodes_per_arena<Dim> * node_values;
   using Sources = Source<T, Dim, true, node_values>;
-  T* arena = arenas + static_cast<std::size_t>(block.slot) * arena_values;
+  T* arena = arenas + static_cast<std::size_t>(block.arena) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
   Tile<T, Dim> tile(block, workspace);
