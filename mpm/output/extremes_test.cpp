@@ -91,6 +91,23 @@ TEST_F(Extremes, ASingleParticleAndBodiesOneCellThickComeToAnEndAndAreSaidToBeUn
       }
 }
 
+TEST_F(Extremes, ADomainOneCellThickComesToAnEndAndIsSaidToBeUnresolved) {
+  const auto duct = [](const std::string& cell, const std::string& scheme, const std::string& precision) {
+    return scenes::load_scene("poiseuille-10",
+                              {{"mpm.cell=" + cell, "foam.cell=" + cell, "mpm.scheme=" + scheme,
+                                "mpm.precision=" + precision, "time.end=0.2", "mpm.threads=1"},
+                               {}});
+  };
+  for (const char* scheme : {"quadratic-apic", "linear-flip"})
+    for (const char* precision : {"double", "float"}) {
+      const auto run = run_and_read(duct("0.5", scheme, precision));
+      expect_sane(run, std::string(scheme) + ' ' + precision);
+      EXPECT_THAT(run.info["verdict"].get<std::string>(),
+                  HasSubstr("1.0 cells across the narrowest passage"));
+    }
+  EXPECT_EQ(run_and_read(duct("0.05", "quadratic-apic", "double")).info["verdict"], "sound");
+}
+
 TEST_F(Extremes, ASlumpOfAMicrometreAndOneOfAKilometreAreTheSameSlumpInTheirOwnUnits) {
   // Lengths times L, times times sqrt(L), stresses times L, viscosity times L^1.5: Froude's and Bingham's
   // numbers stay.
