@@ -30,15 +30,19 @@ void add_exact(CLI::App& app) {
   command->add_option("--set", arguments->overrides.set, "Override a key: material.yield_stress=100")
       ->take_all();
   command->add_flag("--thin-film", arguments->thin_film,
-                    "Add a slump's approach to rest in time, as a thin film of Bingham material");
+                    "Add a slump's approach to rest in time, as a thin film of Bingham material, "
+                    "with and without the pull of its plug");
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
     const auto scene = scenes::load_scene(arguments->scene, arguments->overrides);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
     auto written = exact::write_exact_runs(scene, output);
-    if (arguments->thin_film)
+    if (arguments->thin_film) {
       written.push_back(exact::write_film_run(scene, std::filesystem::path(output) / "thin-film"));
+      written.push_back(
+          exact::write_film_run(scene, std::filesystem::path(output) / "thin-film-under-plug", true));
+    }
     for (const auto& run : written) {
       fmt::print("{}\n  {}\n", run.summary, run.directory.string());
       json["runs"].push_back(run.directory.string());

@@ -152,7 +152,7 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
 
 }  // namespace
 
-ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory) {
+ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory, bool plug_pulls) {
   if (scene.kind != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
     refuse(scene, "a thin film spreads from a slump about its axis");
   if (scene.thixotropy || scene.base.law != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
@@ -163,11 +163,16 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
   const Bingham material = material_of(scene);
   const auto& cone = scene.slump();
   const double gravity = scene.forces.gravity;
-  SpreadingFilm film([&](double depth, double slope) { return film_flux(material, gravity, depth, slope); },
-                     cone.cone_radius_bottom, cone.volume(), cone.domain_radius, rings);
+  SpreadingFilm film(
+      [&](double depth, double slope) {
+        if (plug_pulls) slope = slope_under_plug(material, gravity, depth, slope);
+        return film_flux(material, gravity, depth, slope);
+      },
+      cone.cone_radius_bottom, cone.volume(), cone.domain_radius, rings);
   runs::RunWriter writer(directory, scene, "exact");
   writer.info()["model"] = "bingham";
-  writer.info()["label"] = "thin film, Bingham";
+  const std::string label = plug_pulls ? "thin film under its plug's pull, Bingham" : "thin film, Bingham";
+  writer.info()["label"] = label;
   writer.info()["source"] = "lubrication of a yield-stress film (Liu and Mei 1989), solved numerically";
   writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3"});
   const auto& output = scene.output;
@@ -185,9 +190,8 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
     if (row % rows_per_profile == 0 || row == rows) writer.profile(state.time, radius, state.depth);
   }
   writer.finish(runs::Status::end_time, "", "sound");
-  return {directory,
-          fmt::format("thin film, Bingham: spread {:.1f} mm at {:g} s, still growing; centre {:.1f} mm",
-                      1000.0 * spread, scene.time.end, 1000.0 * height)};
+  return {directory, fmt::format("{}: spread {:.1f} mm at {:g} s, still growing; centre {:.1f} mm", label,
+                                 1000.0 * spread, scene.time.end, 1000.0 * height)};
 }
 
 std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory) {

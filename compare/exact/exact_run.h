@@ -21,8 +21,10 @@ struct ExactRun {
 std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory);
 
 /// The slump as a thin film of the scene's Bingham material, in time: what its own law lets it do, without
-/// inertia and without a grid over its depth.
+/// inertia and without a grid over its depth. `plug_pulls`: with the extensional stress of the plug, so that
+/// it comes to the second-order slump instead of the leading-order one.
 /// @throws runs::RunError where the scene is no such slump, saying why.
-ExactRun write_film_run(const scenes::Scene&, const std::filesystem::path& directory);
+ExactRun write_film_run(const scenes::Scene&, const std::filesystem::path& directory,
+                        bool plug_pulls = false);
 
 }  // namespace flowrest::compare::exact

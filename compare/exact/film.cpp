@@ -71,6 +71,11 @@ double film_flux(const Bingham& material, double gravity, double depth, double s
   return std::copysign(flux, slope);
 }
 
+double slope_under_plug(const Bingham& material, double gravity, double depth, double slope) {
+  const double pull = plug_pull * material.yield_stress / (material.density * gravity);  // m
+  return depth > pull ? slope * (1.0 - pull / depth) : 0.0;
+}
+
 double film_flux(const RegularisedFluid& fluid, double density, double gravity, double depth, double slope) {
   if (!(depth > 0.0) || slope == 0.0) return 0.0;
   const double base_stress = density * gravity * depth * std::abs(slope);

@@ -13,7 +13,11 @@ namespace flowrest::compare::exact {
 /// = rho g h s above tau0 it yields up to Y = h (1 - tau0/tau_b) and carries rho g s Y^2 (3 h - Y)/(6 eta).
 /// m2/s
 double film_flux(const Bingham&, double gravity, double depth, double slope);
-/// The same of a regularised fluid: depth times film_velocity, its integral by fewer points. m2/s
+/// The slope that would shear the base of a film as it is sheared with the pull of the plug above it: at rest
+/// and close to it the plug is at yield, stretched alike in all directions, and carries 1.36 tau0 h, so that
+/// the base stress is (rho g h - 1.36 tau0) |h'|. Its arrested shape is second_order_slump.
+double slope_under_plug(const Bingham&, double gravity, double depth, double slope);
+/// film_flux of a regularised fluid: depth times film_velocity, its integral by fewer points. m2/s
 double film_flux(const RegularisedFluid&, double density, double gravity, double depth, double slope);
 
 /// Depth and spread of an axisymmetric film as it spreads.

@@ -76,6 +76,36 @@ TEST(Film, KeepsItsVolumeAndApproachesTheArrestedShapeFromBelow) {
   EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth), arrested.depth(0.0), 5e-4);
 }
 
+/// The pull takes all slope from a film no deeper than the nose, and the same stress from a deeper one.
+TEST(Film, APlugsPullActsAsLessSlope) {
+  const double pull = plug_pull * roussel.yield_stress / (roussel.density * gravity);
+  EXPECT_EQ(slope_under_plug(roussel, gravity, pull, 0.5), 0.0);
+  for (const double slope : {0.05, -0.3})
+    EXPECT_NEAR(roussel.density * gravity * 0.04 * slope_under_plug(roussel, gravity, 0.04, slope),
+                (roussel.density * gravity * 0.04 - plug_pull * roussel.yield_stress) * slope, 1e-10);
+}
+
+/// Under its plug's pull a film comes to the second-order slump: 4 cm in spread from the leading-order one,
+/// and found to a ring or two.
+TEST(Film, UnderItsPlugsPullApproachesTheSecondOrderShape) {
+  SpreadingFilm film(
+      [](double depth, double slope) {
+        return film_flux(roussel, gravity, depth, slope_under_plug(roussel, gravity, depth, slope));
+      },
+      0.1, volume, 0.45, 225);
+  const auto arrested = second_order_slump(roussel, gravity, volume);
+  EXPECT_LT(arrested.spread(0.003), leading_order_slump(roussel, gravity, volume).spread(0.003) - 0.02);
+  double earlier = 0.0;
+  for (const double time : {5.0, 60.0, 1000.0}) {
+    const double spread = spread_at(film, time);
+    EXPECT_GT(spread, earlier);
+    earlier = spread;
+  }
+  EXPECT_NEAR(earlier, arrested.spread(0.003), 0.008);
+  EXPECT_NEAR(film.state().volume(), volume, 1e-8 * volume);
+  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth), arrested.depth(0.0), 1e-3);
+}
+
 /// The growth still to come falls as 1/t: what the centre sinks from 50 to 100 s is four times what it sinks
 /// from 200 to 400 s.
 TEST(Film, IsNeverAtRestInFiniteTime) {
@@ -117,6 +147,9 @@ TEST(Film, LeavesARunOfWhatAScenesMaterialDoes) {
   EXPECT_NEAR(run.history.at("spread_mm").back(), 488.6, 2.0);
   EXPECT_NEAR(run.history.at("volume_m3").back(), scene.slump().volume(), 1e-9);
   EXPECT_DOUBLE_EQ(run.profiles.back().time, 2.0);
+  std::filesystem::remove_all(directory);
+  write_film_run(scene, directory, true);
+  EXPECT_NEAR(runs::read_run(directory).history.at("spread_mm").back(), 477.6, 2.0);
   std::filesystem::remove_all(directory);
   for (const char* set : {"walls.base=slip", "geometry.dimension=plane"})
     EXPECT_THROW(write_film_run(scenes::load_scene("roussel-slump", {{set}, std::nullopt}), directory),

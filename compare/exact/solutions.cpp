@@ -37,7 +37,7 @@ ArrestedSlump leading_order_slump(const Bingham& material, double gravity, doubl
 
 ArrestedSlump second_order_slump(const Bingham& material, double gravity, double volume) {
   ArrestedSlump slump = leading_order_slump(material, gravity, volume);
-  slump.nose = 1.36 * slump.length;
+  slump.nose = plug_pull * slump.length;
   // The volume grows with the radius, and the nose only shortens the slump: bisection between 0 and the
   // leading order.
   double low = 0.0, high = slump.radius;

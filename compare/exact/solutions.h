@@ -31,6 +31,10 @@ struct ArrestedSlump {
 /// its square root.
 ArrestedSlump leading_order_slump(const Bingham&, double gravity, double volume);
 
+/// Pull of a pseudo-plug that yields stretched alike in all directions, over tau0 h: 3 / sqrt(3) pi / 4, as
+/// s_rr - s_zz = sqrt(3 (tau0^2 - tau_rz^2)) with tau_rz falling linearly from tau0 at the base.
+inline constexpr double plug_pull = 1.36;
+
 /// With the extensional stress of the pseudo-plug above the sheared base, which adds to the hydrostatic
 /// thrust and shortens the slump: a = 1.36 tau0/(rho g), R from the volume.
 ArrestedSlump second_order_slump(const Bingham&, double gravity, double volume);
