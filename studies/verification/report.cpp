@@ -27,7 +27,7 @@ Json finding_json(const Finding& f) {
     grids.push_back({{"grid", g.grid},
                      {"error", g.measured ? Json(g.measured->error) : Json()},
                      {"value", g.measured ? Json(g.measured->value) : Json()},
-                     {"trouble", g.trouble},
+                     {"trouble", g.measured ? "" : g.trouble},
                      {"wall_s", g.cpu}});
   Json orders = Json::array();
   for (const auto& order : f.orders) orders.push_back(optional_json(order));

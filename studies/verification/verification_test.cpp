@@ -75,5 +75,7 @@ TEST(Verify, ComputesJudgesAndReportsOneCase) {
   for (const auto& f : findings) EXPECT_TRUE(f.passed) << f.of.variant << ": " << f.verdict;
   EXPECT_THAT(to_csv(findings), HasSubstr("Free fall"));
   EXPECT_EQ(to_json(findings)["cases"].size(), 4u);
+  for (const auto& c : to_json(findings)["cases"])
+    for (const auto& grid : c["grids"]) EXPECT_EQ(grid["trouble"], "") << "of what was computed";
   EXPECT_THAT(flowrest::report::render(page_of(findings)), HasSubstr("4 of 4 bounds hold"));
 }
