@@ -5,11 +5,16 @@
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// Puts a tile's particles that moved into a wall back on its surface, and counts anew the axes along which
-/// they left their cell. Only blocks near a wall are asked.
+/// they left their cell. Only cells that a wall can be reached from are asked, unless a particle went further
+/// than was reckoned with: `farthest_square` is how far the fastest went, in cells, squared.
 template <class T, int Dim>
-void keep_out_of_walls(const StepParameters<T>& step, const Tile<T, Dim>& tile, T* const* x, T* left) {
+void keep_out_of_walls(const StepParameters<T>& step, const Tile<T, Dim>& tile, T farthest_square,
+                       T* const* x, T* left) {
   const double size = static_cast<double>(step.cell);
+  const bool reckoned = farthest_square <= T(wall_reach * wall_reach);
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+    const WallSet near = reckoned ? tile.block.walls[cell] : ~WallSet{0};
+    if (near == 0) continue;
     int c[3];
     cell_coordinates<T, Dim>(cell, c);
     const int inside[3] = {c[0], Dim == 3 ? c[1] : c[2], c[2]};
@@ -17,7 +22,7 @@ void keep_out_of_walls(const StepParameters<T>& step, const Tile<T, Dim>& tile, 
       double place[3] = {};
       for (int a = 0; a < Dim; ++a)
         place[a] = (tile.block.origin[a] + inside[a] + static_cast<double>(x[a][q])) * size;
-      if (!step.keep_out(step.walls, place)) continue;
+      if (!step.keep_out(step.walls, near, place)) continue;
       left[q] = T(0);
       for (int a = 0; a < Dim; ++a) {
         const T to = static_cast<T>(place[a] / size - tile.block.origin[a] - inside[a]);

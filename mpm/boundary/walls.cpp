@@ -22,6 +22,9 @@ Vector unit(const Vector& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
+/// Without std::hypot's care for the very large and the very small, which costs most of a distance.
+double norm(double u, double v) { return std::sqrt(u * u + v * v); }
+
 /// Number of equal parts of a length, none longer than `spacing`.
 int parts(double length, double spacing) {
   constexpr double round_off = 1e-9;
@@ -68,17 +71,18 @@ std::vector<SurfacePoint> HalfSpace::surface(double spacing) const {
 }
 
 double Outline::distance(double u, double v) const {
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = std::numeric_limits<double>::infinity();  // squared
   bool inside = false;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const auto& a = corners[i];
     const auto& b = corners[(i + 1) % corners.size()];
     const double du = b[0] - a[0], dv = b[1] - a[1];
     const double share = std::clamp(((u - a[0]) * du + (v - a[1]) * dv) / (du * du + dv * dv), 0.0, 1.0);
-    nearest = std::min(nearest, std::hypot(u - a[0] - share * du, v - a[1] - share * dv));
+    const double across = u - a[0] - share * du, up = v - a[1] - share * dv;
+    nearest = std::min(nearest, across * across + up * up);
     if ((a[1] > v) != (b[1] > v) && u < a[0] + (v - a[1]) / dv * du) inside = !inside;
   }
-  return inside ? -nearest : nearest;
+  return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
 }
 
 double Prism::distance(const Vector& x) const {
@@ -86,7 +90,7 @@ double Prism::distance(const Vector& x) const {
     case Sweep::none:
       return outline_.distance(x[0], x[1]);
     case Sweep::revolved:
-      return outline_.distance(std::hypot(x[0], x[1]), x[2]);
+      return outline_.distance(norm(x[0], x[1]), x[2]);
     case Sweep::extruded:
       break;
   }
@@ -94,7 +98,7 @@ double Prism::distance(const Vector& x) const {
   const double flat = outline_.distance(x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]);
   const double beyond = std::max(swept_.from - x[axis], x[axis] - swept_.to);
   if (flat <= 0.0 && beyond <= 0.0) return std::max(flat, beyond);
-  return std::hypot(std::max(flat, 0.0), std::max(beyond, 0.0));
+  return norm(std::max(flat, 0.0), std::max(beyond, 0.0));
 }
 
 std::vector<SurfacePoint> Prism::surface(double spacing) const {
@@ -138,11 +142,11 @@ Cylinder::Cylinder(int dimension, const Vector& centre, double radius, double fr
     : dimension_(dimension), centre_(centre), radius_(radius), from_(from), to_(to) {}
 
 double Cylinder::distance(const Vector& x) const {
-  const double flat = std::hypot(x[0] - centre_[0], x[1] - centre_[1]) - radius_;
+  const double flat = norm(x[0] - centre_[0], x[1] - centre_[1]) - radius_;
   if (dimension_ == 2) return flat;
   const double beyond = std::max(from_ - x[2], x[2] - to_);
   if (flat <= 0.0 && beyond <= 0.0) return std::max(flat, beyond);
-  return std::hypot(std::max(flat, 0.0), std::max(beyond, 0.0));
+  return norm(std::max(flat, 0.0), std::max(beyond, 0.0));
 }
 
 std::vector<SurfacePoint> Cylinder::surface(double spacing) const {

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mpm/boundary/nearby_walls.h"
+#include "mpm/test_random.h"
 #include "mpm/verification/known_motions.h"
 
 using namespace flowrest::mpm;
@@ -81,6 +83,70 @@ TEST(WallShape, SurfacePointsLieOnTheSurfaceWithTheirNormalsOutwards) {
       EXPECT_NEAR(shape->distance(outside), 1e-5 - depth, 1e-9);
     }
   }
+}
+
+namespace {
+
+/// A floor, a funnel's slope, a bar, a lid that moves, and many walls far away.
+std::vector<Wall> walls_of_all_kinds() {
+  const Extent extent = {{-1, -1, 0}, {1, 1, 1}};
+  std::vector<Wall> walls(70);
+  for (Wall& wall : walls)
+    wall.shape = std::make_shared<HalfSpace>(3, Vector{0.0, 0.0, -9.0}, Vector{0.0, 0.0, 1.0}, extent);
+  walls[0].shape = std::make_shared<HalfSpace>(3, Vector{}, Vector{0.1, 0.0, 1.0}, extent);
+  walls[1].shape = std::make_shared<Prism>(Outline{{{0.1, 0.0}, {0.4, 0.0}, {0.3, 0.6}}, {true, false, true}},
+                                           Prism::Swept{Sweep::extruded, 1, -0.2, 0.2});
+  walls[66].shape = std::make_shared<Cylinder>(3, Vector{-0.1, 0.2, 0.0}, 0.006, 0.0, 0.5);
+  walls[67].shape = std::make_shared<HalfSpace>(3, Vector{0.0, 0.0, 0.6}, Vector{0.0, 0.0, -1.0}, extent);
+  walls[67].motion.velocity = {0.0, 0.0, -0.5};
+  walls[68].shape = std::make_shared<HalfSpace>(3, Vector{0.0, 0.3, 0.0}, Vector{0.0, -1.0, 0.0}, extent);
+  walls[68].opens_at = 0.3;
+  return walls;
+}
+
+}  // namespace
+
+TEST(WallShape, WhatIsNearbySaysOfEveryPlaceInReachWhetherAWallHoldsIt) {
+  const std::vector<Wall> walls = walls_of_all_kinds();
+  constexpr double cell = 0.05;
+  NearbyWalls nearby(walls, 3, cell);
+  Random random(7);
+  int held = 0, far = 0, told = 0;
+  for (const double time : {0.0, 0.01, 0.2, 0.5}) {
+    told += nearby.follow(time);
+    for (int i = 0; i < 20000; ++i) {
+      int origin[3], inside[3];
+      for (int& o : origin) o = block_edge * random.integer(-2, 3);
+      for (int& c : inside) c = random.integer(0, block_edge - 1);
+      const auto slot =
+          static_cast<std::uint32_t>((origin[0] + 8) * 36 + (origin[1] + 8) * 6 + origin[2] + 8);
+      // Anywhere in the cell, and from there as far as is reckoned with.
+      Vector place, way;
+      double length = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        place[a] = (origin[a] + inside[a] + random.uniform()) * cell;
+        way[a] = random.between(-1.0, 1.0);
+        length += way[a] * way[a];
+      }
+      for (std::size_t a = 0; a < 3; ++a) place[a] += wall_reach * cell * way[a] / std::sqrt(length);
+      const bool in_one = std::any_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+        return wall.stands(time) && wall.distance(place, time) < 0.0;
+      });
+      const WallSet* sets = nearby.of_block(slot, origin);
+      const WallSet set = sets ? sets[(inside[0] * block_edge + inside[1]) * block_edge + inside[2]] : 0;
+      ASSERT_EQ(nearby.hold(set, place, time), in_one) << i;
+      held += in_one;
+      if (!std::all_of(walls.begin(), walls.end(),
+                       [&](const Wall& wall) { return wall.distance(place, time) > 3.0 * cell; }))
+        continue;
+      ++far;
+      EXPECT_EQ(set, 0u);
+    }
+  }
+  // The first 5 mm are within what was reckoned with, the next 95 are not.
+  EXPECT_EQ(told, 2);
+  EXPECT_GT(held, 10000);
+  EXPECT_GT(far, 1000);
 }
 
 namespace {

@@ -43,8 +43,9 @@ struct StepParameters {
   Dilatation dilatation = Dilatation::cell_average;
   bool explicit_fluid = false;
   AxisBounds bounds[3];
-  /// Moves a place (m) out of walls of any shape; returns whether it lay in one. Null where there are none.
-  bool (*keep_out)(const void* walls, double (&place)[3]) = nullptr;
+  /// Moves a place (m) out of walls of any shape if it lies in one of `near`; returns whether it did. Null
+  /// where there are no such walls.
+  bool (*keep_out)(const void* walls, WallSet near, double (&place)[3]) = nullptr;
   const void* walls = nullptr;
   T smallest_mass{};  ///< kg: a node with less carries no velocity
 };

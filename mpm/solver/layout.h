@@ -50,6 +50,11 @@ struct BlockSums {
   std::uint32_t faults = 0;  ///< particles that moved further than a cell or are not finite
 };
 
+/// A set of walls of any shape, a bit for each.
+using WallSet = std::uint64_t;
+/// How far a particle may go in a step, in cells, for the walls near its cell to be all that it can get into.
+constexpr double wall_reach = 0.25;
+
 /// What a kernel sees of one occupied block.
 struct BlockView {
   int origin[3] = {0, 0, 0};  ///< first cell, in cells
@@ -57,8 +62,9 @@ struct BlockView {
   std::uint32_t arena = 0;    ///< and in that of arenas, which only blocks with particles have
   std::uint32_t first = 0;    ///< of its particles in their arrays, where they lie sorted by cell
   const std::uint32_t* start =
-      nullptr;             ///< of each cell's particles, from `first`; cells_per_block + 1 of them
-  bool near_wall = false;  ///< a wall that is no plane along the grid may reach into it
+      nullptr;  ///< of each cell's particles, from `first`; cells_per_block + 1 of them
+  const WallSet* walls =
+      nullptr;  ///< of any shape, that each cell's particles may get into; null where there are none near
   const std::uint32_t* plus =
       nullptr;              ///< slots of the 2^Dim blocks at +{0,1} per axis; no_slot where absent
   Mover* movers = nullptr;  ///< room for every particle of the block

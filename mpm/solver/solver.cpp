@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/boundary/nearby_walls.h"
 #include "mpm/boundary/wall_contact.h"
 #include "mpm/material/deviator.h"
 #include "mpm/solver/particles.h"
@@ -155,11 +156,10 @@ class SolverOf final : public Solver {
         typename WallContact<T>::Grid{settings.dimension, settings.transfer == Transfer::quadratic_apic,
                                       settings.cell, settings.bounds},
         settings.walls);
-    for (const Wall& wall : settings.walls)
-      walls_move_ |= wall.motion.moves() || std::isfinite(wall.opens_at);
+    nearby_walls_ = std::make_unique<NearbyWalls>(settings_.walls, settings.dimension, settings.cell);
     p.walls = this;
-    p.keep_out = [](const void* self, double(&place)[3]) {
-      return static_cast<const SolverOf*>(self)->keep_out(place);
+    p.keep_out = [](const void* self, WallSet near, double(&place)[3]) {
+      return static_cast<const SolverOf*>(self)->keep_out(near, place);
     };
   }
 
@@ -172,28 +172,18 @@ class SolverOf final : public Solver {
   }
 
   /// Out of the walls as they are at the step's end.
-  bool keep_out(double (&place)[3]) const {
+  bool keep_out(WallSet near, double (&place)[3]) const {
     constexpr double farthest = 0.5;  // cells
     Vector x = {place[0], place[1], place[2]};
     const double end = time_ + static_cast<double>(parameters_.step);
+    if (!nearby_walls_->hold(near, x, end)) return false;
     if (!push_out(settings_.walls, settings_.dimension, end, farthest * settings_.cell, x)) return false;
     std::copy(x.begin(), x.end(), place);
     return true;
   }
 
-  /// Finds the blocks into which a wall may reach within a step.
-  void mark_blocks_near_walls() {
-    const double edge = block_edge * settings_.cell;
-    const double reach = 0.5 * edge * std::sqrt(settings_.dimension) + settings_.cell;
-    for (BlockView& view : views_) {
-      Vector centre{};
-      for (int a = 0; a < settings_.dimension; ++a)
-        centre[static_cast<std::size_t>(a)] = view.origin[a] * settings_.cell + 0.5 * edge;
-      view.near_wall = std::any_of(settings_.walls.begin(), settings_.walls.end(), [&](const Wall& wall) {
-        return wall.stands(time_) && wall.distance(centre, time_) < reach;
-      });
-    }
-    marked_at_ = time_;
+  void mark_walls_nearby() {
+    for (BlockView& view : views_) view.walls = nearby_walls_->of_block(view.slot, view.origin);
   }
 
   static bool is_thixotropic(Law law) {
@@ -234,14 +224,14 @@ class SolverOf final : public Solver {
     for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
     node_views_.clear();
     for (std::uint32_t slot = 0; slot < slots; ++slot) node_views_.push_back(blocks_.node_view(slot));
-    if (contact_) mark_blocks_near_walls();
+    if (contact_) mark_walls_nearby();
     stale_ = false;
   }
 
   void run_stages() {
     if (stale_) prepare();
     if (contact_) {
-      if (walls_move_ && marked_at_ != time_) mark_blocks_near_walls();
+      if (nearby_walls_->follow(time_ + static_cast<double>(parameters_.step))) mark_walls_nearby();
       contact_->place(blocks_, time_);
     }
     const auto blocks = static_cast<std::int64_t>(views_.size());
@@ -398,11 +388,11 @@ class SolverOf final : public Solver {
   Kernels<T> kernels_;
   StepParameters<T> parameters_;
   double apic_relaxation_time_ = 0.0;
-  std::unique_ptr<WallContact<T>> contact_;  ///< null where no wall but planes along the grid is given
-  bool walls_move_ = false;
-  double time_ = 0.0, marked_at_ = -1.0;  ///< s
-  double drive_ = 0.0;                    ///< m/s that the driving force gives in a step
-  double wall_work_ = 0.0;                ///< J in this step
+  std::unique_ptr<WallContact<T>> contact_;    ///< null where no wall but planes along the grid is given
+  std::unique_ptr<NearbyWalls> nearby_walls_;  ///< likewise
+  double time_ = 0.0;                          ///< s
+  double drive_ = 0.0;                         ///< m/s that the driving force gives in a step
+  double wall_work_ = 0.0;                     ///< J in this step
   int threads_ = 1;
   int tile_capacity_ = usual_tile_capacity;
   AlignedArray<T> arenas_, nodes_;

@@ -176,7 +176,7 @@ void move_particles(const StepParameters<T>& step, Tile<T, Dim>& tile, T* const*
     momentum += mass[q] * advection[0][q];
     largest_speed = largest_speed > square ? largest_speed : square;
   }
-  if (tile.block.near_wall) keep_out_of_walls<T, Dim>(step, tile, x, left);
+  if (tile.block.walls) keep_out_of_walls<T, Dim>(step, tile, largest_speed * per_step * per_step, x, left);
   for (int q = 0; q < count; ++q)
     if (left[q] != T(0)) note_mover<T, Dim, Shape>(tile, x, q);
   BlockSums& sums = *tile.block.sums;
