@@ -74,6 +74,7 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       if (fine.view) {
         n.ours = compare::read(fine.view->run, published.quantity);
         n.noise = fine.view->noisy ? fine.view->noise : "";
+        n.walls_differ = fine.view->walls_differ;
         n.verdict = fine.view->trouble.empty() ? Verdict::never : Verdict::incomplete;
         n.words = fine.view->trouble;
       }
@@ -85,6 +86,12 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       numbers.push_back(std::move(n));
     }
   return numbers;
+}
+
+/// How a quantity changes over the last fifth of a run.
+std::optional<compare::Trend> last_trend(const Series& series) {
+  return compare::trend(series, series.time.front() + 0.8 * (series.end() - series.time.front()),
+                        series.end());
 }
 
 /// The fluids of each solver at the time at which the solid rests, and later.
@@ -104,10 +111,10 @@ std::vector<Perpetual> perpetual_of(const std::vector<Seen>& all, const compare:
             if (const auto value = solid.view->gauge_at(*rest)) p.solid = gauge.shown * *value;
           }
     const double end = fluid.view->gauge.end();
+    p.from = p.rest.value_or(0.5 * end);
     std::vector<double> times;
-    if (p.rest)
-      for (const double factor : {1.0, 2.0, 5.0})
-        if (factor * *p.rest < 0.99 * end) times.push_back(factor * *p.rest);
+    for (const double factor : {1.0, 2.0, 5.0})
+      if (factor * p.from < 0.99 * end) times.push_back(factor * p.from);
     times.push_back(end);
     for (const double time : times)
       if (const auto value = fluid.view->gauge_at(time)) p.fluid_at.emplace_back(time, gauge.shown * *value);
@@ -123,9 +130,17 @@ std::vector<Flocculation> flocculation_of(const std::vector<Seen>& all) {
     const Series lambda = compare::column(seen.view->run, "flocculation_mean");
     if (lambda.empty()) continue;
     const auto least = std::min_element(lambda.value.begin(), lambda.value.end());
-    found.push_back({seen.wanted->label(), lambda.value.front(), *least,
-                     lambda.time[static_cast<std::size_t>(least - lambda.value.begin())], lambda.value.back(),
-                     lambda.end(), seen.view->held, compare::flocculation_at_rest(*seen.view)});
+    Flocculation f{.solver = seen.wanted->solver, .model = seen.wanted->model};
+    f.start = lambda.value.front();
+    f.least = *least;
+    f.least_at = lambda.time[static_cast<std::size_t>(least - lambda.value.begin())];
+    f.end = lambda.value.back();
+    f.end_at = lambda.end();
+    if (const auto trend = last_trend(lambda)) f.rate_end = trend->slope;
+    f.held = seen.view->held;
+    f.growth_at_rest = compare::flocculation_at_rest(*seen.view);
+    f.rises_only = !(f.start > 0.0);
+    found.push_back(f);
   }
   return found;
 }
@@ -248,6 +263,13 @@ Found found_run(const Folder& folder, const Seen& seen, const compare::Gauge& ga
   found.rest = compare::read(view.run, "rest_s");
   found.end = view.measures.end;
   if (view.measures.gauge_end) found.gauge_end = gauge.shown * *view.measures.gauge_end;
+  found.arrival = compare::read(view.run, "arrival_s");
+  if (compare::grows_to_rest(seen.wanted->point.scene->kind)) {
+    const Series series = compare::column(view.run, found.arrival ? "end_height_mm" : gauge.column,
+                                          found.arrival ? 1.0 : 1e3 * gauge.si);
+    if (!series.empty())
+      if (const auto trend = last_trend(series)) found.creep = trend->slope;
+  }
   found.cpu = view.measures.cpu.value_or(0.0);
   found.version = compare::word(view.run.info, "/provenance/git_hash");
   return found;
@@ -288,7 +310,8 @@ std::string command_for(const std::string& scene, const Options& options) {
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
                          std::vector<report::Entry>& entries) {
   const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind);
-  SceneFound scene{wanted.name, wanted.scene.title, wanted.scene.kind};
+  SceneFound scene{.name = wanted.name, .title = wanted.scene.title, .kind = wanted.scene.kind};
+  if (scene.kind == scenes::Kind::l_box) scene.length_mm = 1e3 * wanted.scene.l_box().channel_length;
   std::vector<fs::path> directories;
   for (const Wanted& run : wanted.runs) {
     entry_index(entries, run);
@@ -342,6 +365,11 @@ std::string to_string(Verdict verdict) {
   throw std::logic_error("a verdict without a name");
 }
 
+std::optional<double> Perpetual::change() const {
+  if (fluid_at.size() < 2) return std::nullopt;
+  return fluid_at.back().second - fluid_at.front().second;
+}
+
 std::optional<double> Number::difference() const {
   const auto target = published.target();
   return ours && target ? std::optional(*ours - *target) : std::nullopt;
@@ -370,21 +398,25 @@ void judge(Number& n) {
     n.words = "nothing to compare with";
     return;
   }
-  const double miss = std::abs(*difference);
-  if (!n.uncertainty) {
-    n.verdict = Verdict::unresolved;
-    n.words = n.coarse ? "unresolved" : "unresolved: only one resolution has it";
-    return;
-  }
-  if (*n.uncertainty > n.published.allowed) {
-    n.verdict = Verdict::unresolved;
-    n.words = fmt::format("unresolved: known to ± {} only, {} are allowed", amount(*n.uncertainty),
-                          amount(n.published.allowed));
-    return;
-  }
-  if (miss > n.published.allowed) {
+  const double miss = std::abs(*difference), allowed = n.published.allowed;
+  n.within = miss <= allowed;
+  // What is not known as well as is allowed can miss, where not even its uncertainty reaches what is allowed;
+  // it cannot agree.
+  const bool known = n.uncertainty && *n.uncertainty <= allowed;
+  const bool out_of_reach = n.uncertainty && miss > allowed + *n.uncertainty;
+  if (!*n.within && (known || out_of_reach)) {
     n.verdict = Verdict::misses;
-    n.words = fmt::format("misses by {}, {} are allowed", amount(miss), amount(n.published.allowed));
+    n.words = fmt::format("misses by {}, {} are allowed", amount(miss), amount(allowed));
+    return;
+  }
+  if (!known) {
+    n.verdict = Verdict::unresolved;
+    n.words = fmt::format("unresolved: {}, {}",
+                          *n.within ? fmt::format("within the {} allowed", amount(allowed))
+                                    : fmt::format("{} off, {} are allowed", amount(miss), amount(allowed)),
+                          n.uncertainty ? fmt::format("but known to ± {} only", amount(*n.uncertainty))
+                          : n.coarse    ? "but of unknown uncertainty"
+                                        : "but only one resolution has it");
     return;
   }
   n.verdict = Verdict::agrees;
@@ -399,6 +431,7 @@ Validation collect(const Folder& folder, const std::vector<SceneWanted>& wanted,
   validation.items = read_paper_items();
   for (const SceneWanted& scene : wanted)
     validation.scenes.push_back(collect_scene(folder, scene, options, validation.entries));
+  validation.findings = findings_of(validation.scenes);
   return validation;
 }
 

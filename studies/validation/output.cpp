@@ -31,8 +31,10 @@ Json number_json(const Number& n) {
           {"uncertainty", value(n.uncertainty)},
           {"difference", value(n.difference())},
           {"verdict", to_string(n.verdict)},
+          {"within_allowed", n.within ? Json(*n.within) : Json()},
           {"words", n.words},
-          {"noise", n.noise}};
+          {"noise", n.noise},
+          {"walls_differ", n.walls_differ}};
 }
 
 Json perpetual_json(const SceneFound& scene, const Perpetual& p) {
@@ -44,7 +46,9 @@ Json perpetual_json(const SceneFound& scene, const Perpetual& p) {
           {"unit", compare::gauge_of(scene.kind).unit},
           {"solid_rests_s", value(p.rest)},
           {"solid", value(p.solid)},
-          {"fluid_at", times}};
+          {"read_from_s", p.from},
+          {"fluid_at", times},
+          {"change", value(p.change())}};
 }
 
 Json run_json(const Found& run) {
@@ -59,7 +63,9 @@ Json run_json(const Found& run) {
           {"noise", run.noise},
           {"walls_differ", run.walls_differ},
           {"rest_s", value(run.rest)},
+          {"arrival_s", value(run.arrival)},
           {"end_s", value(run.end)},
+          {"moves_at_end_mm_s", value(run.creep)},
           {"cpu_s", run.cpu},
           {"made_by", run.version}};
 }
@@ -77,6 +83,7 @@ std::string field(const std::string& text) {
 
 std::string csv_cell(const Json& json) {
   if (json.is_number()) return fmt::format("{:.17g}", json.get<double>());
+  if (json.is_boolean()) return json.get<bool>() ? "yes" : "no";
   return json.is_string() ? field(json.get<std::string>()) : "";
 }
 
@@ -84,9 +91,18 @@ std::string csv_cell(const Json& json) {
 
 Json to_json(const Validation& validation) {
   Json json = {{"format", "flowrest validation"},
-               {"format_version", 1},
+               {"format_version", 2},
                {"provenance", runs::provenance()},
+               {"findings", Json::array()},
                {"scenes", Json::array()}};
+  for (const Finding& f : validation.findings)
+    json["findings"].push_back({{"claim", f.claim},
+                                {"source", f.source},
+                                {"scene", f.scene},
+                                {"solver", to_string(f.solver)},
+                                {"law", f.law},
+                                {"holds", to_string(f.holds)},
+                                {"seen", f.seen}});
   for (const SceneFound& scene : validation.scenes) {
     Json entry = {{"scene", scene.name},
                   {"title", scene.title},
@@ -101,12 +117,14 @@ Json to_json(const Validation& validation) {
     for (const Number& n : scene.numbers) entry["numbers"].push_back(number_json(n));
     for (const Perpetual& p : scene.perpetual) entry["perpetual_flow"].push_back(perpetual_json(scene, p));
     for (const Flocculation& f : scene.flocculation)
-      entry["flocculation"].push_back({{"run", f.label},
+      entry["flocculation"].push_back({{"solver", to_string(f.solver)},
+                                       {"model", scenes::to_string(f.model)},
                                        {"start", f.start},
                                        {"least", f.least},
                                        {"least_at_s", f.least_at},
                                        {"end", f.end},
                                        {"end_at_s", f.end_at},
+                                       {"rate_at_end_1_s", f.rate_end},
                                        {"growth_at_rest_1_s", f.growth_at_rest}});
     json["scenes"].push_back(std::move(entry));
   }

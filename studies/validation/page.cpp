@@ -50,14 +50,23 @@ std::string unbroken(const std::string& text) {
   return whole;
 }
 
-/// A value as its uncertainty has it, for a column of several units.
-Table::Cell worded(const std::optional<double>& value, const std::optional<double>& uncertainty,
-                   const std::string& unit) {
-  return value ? Table::Cell(unbroken(reading(*value, uncertainty, unit))) : Table::Cell();
-}
-
 std::string plain(double value, const std::string& unit) {
   return unbroken(fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit));
+}
+
+/// A value as its uncertainty has it, for a column of several units; four digits are enough.
+Table::Cell worded(const std::optional<double>& value, const std::optional<double>& uncertainty,
+                   const std::string& unit) {
+  constexpr double finest = 5e-4;
+  if (!value) return {};
+  if (uncertainty && *uncertainty < finest * std::abs(*value)) return plain(*value, unit);
+  return unbroken(reading(*value, uncertainty, unit));
+}
+
+/// The verdict in a word or two: what is not known well enough says on which side of the allowed ours lies.
+std::string short_verdict(const Number& n) {
+  if (n.verdict != Verdict::unresolved || !n.within) return to_string(n.verdict);
+  return *n.within ? "unresolved, within" : "unresolved, off";
 }
 
 class ValidationPage {
@@ -73,6 +82,8 @@ class ValidationPage {
     write_words();
     page_.figure = parity("lengths", "mm", "ours against published lengths");
     page_.chapters.push_back(numbers_chapter());
+    if (auto chapter = findings_chapter(); !chapter.blocks.empty())
+      page_.chapters.push_back(std::move(chapter));
     if (auto chapter = perpetual_chapter(); !chapter.blocks.empty())
       page_.chapters.push_back(std::move(chapter));
     if (auto chapter = flocculation_chapter(); !chapter.blocks.empty())
@@ -102,11 +113,12 @@ class ValidationPage {
   /// How many of its numbers a solver and law meets, and how many of them are evidence.
   std::string tally(const std::string& label) const {
     std::map<Verdict, int> counts;
-    int judged = 0, dependent = 0;
+    int judged = 0, dependent = 0, within = 0;
     for (const Number* n : numbers()) {
       if (who(*n) != label || n->verdict == Verdict::not_comparable) continue;
       ++judged;
       ++counts[n->verdict];
+      within += n->verdict == Verdict::unresolved && n->within.value_or(false);
       if (n->verdict == Verdict::agrees &&
           (n->published.mark == Mark::calibrated || n->published.mark == Mark::circular))
         ++dependent;
@@ -118,34 +130,56 @@ class ValidationPage {
                                                       {Verdict::never, "not reached"},
                                                       {Verdict::incomplete, "incomplete"},
                                                       {Verdict::not_run, "not run"}};
-    for (const auto& [verdict, name] : others)
-      if (counts[verdict] > 0) rest.push_back(fmt::format("{} {}", counts[verdict], name));
+    for (const auto& [verdict, name] : others) {
+      if (counts[verdict] == 0) continue;
+      rest.push_back(fmt::format("{} {}", counts[verdict], name));
+      if (verdict == Verdict::unresolved && within > 0)
+        rest.back() += fmt::format(" (of which {} within what is allowed)", within);
+    }
     return fmt::format(
         "{} meets {} of {} published numbers{}{}", label, counts[Verdict::agrees], judged,
         dependent > 0 ? fmt::format(" ({} of them calibrated or circular, so no evidence)", dependent) : "",
         rest.empty() ? "" : "; " + listed(rest));
   }
 
-  /// What carries a warning: how many runs are noisy, came to no end, or are missing.
+  /// How many runs are still to be made.
+  std::string missing() const {
+    std::size_t count = 0;
+    for (const SceneFound& scene : validation_.scenes)
+      for (const Found& run : scene.runs) count += run.outcome.ending == Ending::missing;
+    return count == 0 ? "" : fmt::format("; {} run{} missing", count, count == 1 ? " is" : "s are");
+  }
+
+  /// What carries a warning: runs that are noisy, came to no end, or have other walls.
   std::string warnings() const {
     std::vector<std::string> noisy, failed;
-    std::size_t missing = 0;
     for (const SceneFound& scene : validation_.scenes)
       for (const Found& run : scene.runs) {
         const auto note = [&](std::vector<std::string>& names) {
           if (names.empty() || names.back() != scene.name) names.push_back(scene.name);
         };
         if (!run.noise.empty()) note(noisy);
-        if (run.outcome.ending == Ending::missing)
-          ++missing;
-        else if (run.outcome.ending != Ending::finished)
-          note(failed);
+        if (run.outcome.ending != Ending::finished && run.outcome.ending != Ending::missing) note(failed);
       }
-    std::string text;
-    if (!noisy.empty()) text += "; noisy runs of " + some_of(noisy, ", ", 3);
-    if (!failed.empty()) text += "; runs without a result of " + some_of(failed, ", ", 3);
-    if (missing > 0) text += fmt::format("; {} run{} missing", missing, missing == 1 ? " is" : "s are");
+    std::vector<std::string> parts;
+    if (!failed.empty()) parts.push_back("runs of " + some_of(failed, ", ", 3) + " ended without a result");
+    if (!noisy.empty()) parts.push_back("runs of " + some_of(noisy, ", ", 3) + " are noisy");
+    for (const auto& [walls, scenes] : other_walls())
+      parts.push_back(
+          fmt::format("walls are not the scene's in {} run{}: {}", scenes, scenes == 1 ? "" : "s", walls));
+    if (parts.empty()) return "";
+    std::string text = listed(parts, "; ") + ".";
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
+  }
+
+  /// How many runs have which walls otherwise than their scene.
+  std::map<std::string, int> other_walls() const {
+    std::map<std::string, int> counts;
+    for (const SceneFound& scene : validation_.scenes)
+      for (const Found& run : scene.runs)
+        if (!run.walls_differ.empty() && !run.wanted.coarse) ++counts[run.walls_differ];
+    return counts;
   }
 
   void write_words() {
@@ -159,32 +193,73 @@ class ValidationPage {
         more += (more.empty() ? "" : "\n") + text + ".";
     }
     if (opening.empty()) opening = "Nothing published is known of these scenes";
-    page_.words.push_back(Text{opening + warnings() + ".", Text::Style::opening});
+    page_.words.push_back(Text{opening + missing() + ".", Text::Style::opening});
     const auto answer = [&](const char* question, const std::string& text) {
       if (!text.empty()) page_.words.push_back(report::Answer{question, text});
     };
     answer("And the other solvers and laws?", more);
+    answer("Do solids stop, fluids flow on, and flocs go as the papers have it?", claims());
     answer("Which numbers are missed by the material that stops?", misses());
     answer("When does each model stop?", stops());
     answer("What would an arbitrary stopping time have changed?", arbitrary_stops());
     answer("Which difference is physics, which numerics?", physics_and_numerics());
+    answer("What carries a warning?", warnings());
     answer("What did it cost?", cost());
   }
 
+  /// The papers' claims that every run bears out, and those that some do not.
+  std::string claims() const {
+    std::map<Finding::Holds, int> counts;
+    std::vector<std::string> broken;
+    int judged = 0;
+    for (const Finding& f : validation_.findings) {
+      if (f.holds == Finding::Holds::not_run) continue;
+      ++judged;
+      ++counts[f.holds];
+      if (f.holds == Finding::Holds::no && std::find(broken.begin(), broken.end(), f.claim) == broken.end())
+        broken.push_back(f.claim);
+    }
+    if (judged == 0) return "";
+    std::string text = fmt::format("{} of {} findings hold", counts[Finding::Holds::yes], judged);
+    if (counts[Finding::Holds::undecided] > 0)
+      text += fmt::format(", {} are undecided", counts[Finding::Holds::undecided]);
+    text += ".";
+    if (!broken.empty()) {
+      for (std::string& claim : broken) claim = "“" + claim + "”";
+      text += " Not everywhere: " + some_of(broken, "; ") + ".";
+    }
+    return text;
+  }
+
+  /// What is missed, by what it is and in which solver; the numbers themselves stand in the table.
   std::string misses() const {
+    std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+    for (const Number* n : numbers()) {
+      if (!is_solid(*n) || (n->verdict != Verdict::misses && n->verdict != Verdict::never)) continue;
+      const std::string what = fmt::format("{} in {}{}", compare::reading_named(n->published.quantity).name,
+                                           n->solver == Solver::mpm ? "MPM" : "OpenFOAM",
+                                           n->walls_differ.empty() ? "" : " (" + n->walls_differ + ")");
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == what; });
+      if (group == groups.end()) group = groups.insert(groups.end(), {what, {}});
+      const std::string target = plain(*n->published.target(), unit_of(*n));
+      group->second.push_back(n->verdict == Verdict::never
+                                  ? fmt::format("never instead of {} ({})", target, n->published.scene)
+                                  : fmt::format("{} instead of {} ({})",
+                                                reading(*n->ours, n->uncertainty, unit_of(*n)), target,
+                                                n->published.scene));
+    }
+    constexpr std::size_t told_of_each = 2;
     std::vector<std::string> items;
-    for (const Number* n : numbers())
-      if (is_solid(*n) && (n->verdict == Verdict::misses || n->verdict == Verdict::never))
-        items.push_back(fmt::format("{} ({}, {}): {}", n->published.scene,
-                                    compare::reading_named(n->published.quantity).name,
-                                    n->solver == Solver::mpm ? "MPM" : "OpenFOAM", n->words));
+    for (const auto& [what, each] : groups) items.push_back(what + ": " + some_of(each, ", ", told_of_each));
     return items.empty() ? "" : some_of(items, "; ") + ".";
   }
 
   std::string stops() const {
     std::vector<double> rests;
     int solids = 0, fluids = 0, restless = 0;
-    for (const SceneFound& scene : validation_.scenes)
+    for (const SceneFound& scene : validation_.scenes) {
+      // What is driven, or drains, has no rest to come to.
+      if (scene.kind != scenes::Kind::slump && scene.kind != scenes::Kind::l_box) continue;
       for (const Found& run : scene.runs) {
         if (run.wanted.coarse || run.outcome.ending != Ending::finished) continue;
         const bool solid = run.wanted.model == scenes::Model::elasto_viscoplastic;
@@ -195,30 +270,26 @@ class ValidationPage {
         else
           ++restless;
       }
+    }
     std::string text;
     if (!rests.empty()) {
       const auto [first, last] = std::minmax_element(rests.begin(), rests.end());
-      text = fmt::format("{} of {} elasto-viscoplastic runs come to rest, {}.", rests.size(), solids,
-                         *first == *last ? "after " + compare::words::time(*first)
-                                         : fmt::format("between {} and {}", compare::words::time(*first),
-                                                       compare::words::time(*last)));
+      text = fmt::format(
+          "{} of {} elasto-viscoplastic slumps and L-boxes come to rest, {}.", rests.size(), solids,
+          *first == *last
+              ? "after " + compare::words::time(*first)
+              : fmt::format("between {} and {}", compare::words::time(*first), compare::words::time(*last)));
     } else if (solids > 0) {
-      text = "No elasto-viscoplastic run comes to rest before its end.";
+      text = "No elasto-viscoplastic slump or L-box comes to rest before its end.";
     }
     if (restless > 0 && !rests.empty())
       text += fmt::format(" {} {} still moving at {} end.", restless, restless == 1 ? "is" : "are",
                           restless == 1 ? "its" : "their");
     if (fluids > 0)
-      text += fmt::format(
-          "{}{}", text.empty() ? "" : " ",
-          fluids == 1 ? "The fluid never does." : fmt::format("The {} fluid runs never do.", fluids));
+      text += fmt::format("{}{}", text.empty() ? "" : " ",
+                          fluids == 1 ? "Their fluid never does."
+                                      : fmt::format("The {} fluid runs of them never do.", fluids));
     return text;
-  }
-
-  /// The change of a fluid's gauge after the solid has come to rest; none where there is no such time.
-  static std::optional<double> drift(const Perpetual& p) {
-    if (!p.rest || p.fluid_at.size() < 2) return std::nullopt;
-    return p.fluid_at.back().second - p.fluid_at.front().second;
   }
 
   std::string arbitrary_stops() const {
@@ -229,7 +300,7 @@ class ValidationPage {
     std::map<std::string, std::vector<Drift>> by_unit;
     for (const SceneFound& scene : validation_.scenes)
       for (const Perpetual& p : scene.perpetual)
-        if (const auto change = drift(p)) {
+        if (const auto change = p.rest ? p.change() : std::nullopt) {
           const auto& gauge = compare::gauge_of(scene.kind);
           by_unit[gauge.unit].push_back(
               {*change, fmt::format("{:.{}f} {} in {} ({}, from {} to {})", *change,
@@ -352,14 +423,15 @@ class ValidationPage {
     table.columns = {{"Scene", "", {}, true},
                      {"What", "", {}, true},
                      {"Solver and law", "", {}, true},
+                     {"Verdict", "", {}, true},
                      {"Measured", "", {}, false, "measured"},
                      {"The paper's own", "", {}, false, "paper"},
                      {"Ours", "", {}, false, "ours"},
                      {"Difference", "", {}, false, "difference"},
-                     {"Verdict", "", {}, true},
-                     {"Evidence", "", {}, true},
-                     {"Grids differ by", "", {}, false, "grids_differ_by"},
                      {"Allowed", "", {}, false, "allowed"},
+                     {"Grids differ by", "", {}, false, "grids_differ_by"},
+                     {"Evidence", "", {}, true},
+                     {"In words", "", {}, true},
                      {"Source", "", {}, true}};
     return table;
   }
@@ -372,25 +444,29 @@ class ValidationPage {
     };
     const auto difference = n.difference();
     Table::Cell apart;
-    if (difference)
-      apart = unbroken(fmt::format("{}{}",
-                                   *difference > 0.0   ? "+"
-                                   : *difference < 0.0 ? "−"
-                                                       : "",
-                                   reading(std::abs(*difference), n.uncertainty, unit)));
+    if (difference) {
+      const std::string sign = *difference > 0.0 ? "+" : *difference < 0.0 ? "−" : "";
+      apart = sign + (unit == "mm" ? unbroken(fmt::format("{:.0f} mm", std::abs(*difference)))
+                                   : unbroken(fmt::format("{:.2g} {}", std::abs(*difference), unit)));
+    }
     std::string grids;
     if (n.ours && n.coarse) {
       const double apart_by = std::abs(*n.ours - *n.coarse);
       grids = unit == "mm" ? unbroken(fmt::format("{:.0f} mm", apart_by)) : plain(apart_by, unit);
     }
-    Table::Row row{{p.scene, compare::reading_named(p.quantity).name, who(n), known(p.measured),
-                    known(p.paper), worded(n.ours, n.uncertainty, unit), apart, n.words, to_string(p.mark),
-                    grids, plain(p.allowed, unit), p.source},
+    std::string words = n.words;
+    if (!n.walls_differ.empty() && n.ours) words += "; walls differ: " + n.walls_differ;
+    if (!n.noise.empty()) words += "; noisy: " + n.noise;
+    Table::Row row{{p.scene, compare::reading_named(p.quantity).name, who(n), short_verdict(n),
+                    known(p.measured), known(p.paper), worded(n.ours, n.uncertainty, unit), apart,
+                    plain(p.allowed, unit), grids, to_string(p.mark), words, p.source},
                    entry_of(who(n))};
-    std::string badge =
-        n.verdict == Verdict::agrees || n.verdict == Verdict::not_comparable ? "" : to_string(n.verdict);
-    if (!n.noise.empty()) badge += badge.empty() ? "noisy" : ", noisy";
-    row.badge = badge;
+    std::vector<std::string> badges;
+    if (n.verdict != Verdict::agrees && n.verdict != Verdict::not_comparable)
+      badges.push_back(short_verdict(n));
+    if (!n.noise.empty()) badges.emplace_back("noisy");
+    if (!n.walls_differ.empty()) badges.emplace_back("other walls");
+    row.badge = fmt::format("{}", fmt::join(badges, ", "));
     return row;
   }
 
@@ -399,12 +475,14 @@ class ValidationPage {
     Table table = numbers_table("published", "published numbers and ours");
     table.caption =
         "Ours is at the scene's resolution; what stands after ± is the difference to the second resolution, "
-        "taken on to "
-        "zero cell size at first order. A number agrees where it is known better than what is allowed and "
-        "lies within it. "
-        "Calibrated: the paper fitted a parameter of the scene to this very number. Circular: a parameter "
-        "was computed "
-        "back from it. Neither is evidence for the model.";
+        "taken on to zero cell size at first order. A number agrees where it is known at least as well as is "
+        "allowed "
+        "and lies within it; it misses where it lies outside, and is known as well or further out than its "
+        "±. Anything "
+        "else is unresolved, within what is allowed or off. Calibrated: the paper fitted a parameter of the "
+        "scene to "
+        "this very number. Circular: a parameter was computed back from it. Neither is evidence for the "
+        "model.";
     for (const Number* n : numbers()) table.rows.push_back(row_of(*n));
     if (table.rows.empty())
       chapter.blocks.push_back(Text{"Nothing published is known of these scenes."});
@@ -415,28 +493,81 @@ class ValidationPage {
     return chapter;
   }
 
+  /// Claims, and what each solver and law makes of them in all scenes.
+  report::Chapter findings_chapter() const {
+    report::Chapter chapter{"claims-of-the-papers", "What the papers say of flow and rest", {}};
+    const auto row = [&](const Finding& f, const std::string& label) {
+      return Table::Row{{f.claim, f.scene, label, to_string(f.holds), f.seen, f.source},
+                        entry_of(label),
+                        f.holds == Finding::Holds::yes ? "" : to_string(f.holds)};
+    };
+    Table counts{.id = "claims", .title = "what the papers find, and how often it is found here"};
+    counts.caption =
+        "Besides their numbers the papers say how concrete comes to rest and how its flocs go. A finding is "
+        "one such "
+        "claim in one scene, solver and law, at the scene's resolution; all of them are in the table below.";
+    counts.columns = {{"What the papers find", "", {}, true},
+                      {"Solver and law", "", {}, true},
+                      {"Holds", "", {}, false, "holds"},
+                      {"Not in", "", {}, true, "not_in"},
+                      {"Source", "", {}, true}};
+    Table each{.id = "findings", .title = "every finding"};
+    each.columns = {{"What the papers find", "", {}, true}, {"Scene", "", {}, true},
+                    {"Solver and law", "", {}, true},       {"Verdict", "", {}, true},
+                    {"What is seen", "", {}, true},         {"Source", "", {}, true}};
+    struct Count {
+      int holds = 0, judged = 0;
+      std::vector<std::string> not_in = {};
+      std::string source = {};
+    };
+    std::vector<std::pair<std::pair<std::string, std::string>, Count>> by_claim;
+    for (const Finding& f : validation_.findings) {
+      const std::string label = fmt::format("{} {}", f.solver == Solver::mpm ? "MPM" : "OpenFOAM", f.law);
+      each.rows.push_back(row(f, label));
+      const std::pair key{f.claim, label};
+      auto at = std::find_if(by_claim.begin(), by_claim.end(), [&](const auto& c) { return c.first == key; });
+      if (at == by_claim.end()) at = by_claim.insert(by_claim.end(), {key, {}});
+      Count& count = at->second;
+      if (count.source.find(f.source) == std::string::npos)
+        count.source += (count.source.empty() ? "" : "; ") + f.source;
+      if (f.holds == Finding::Holds::not_run) continue;
+      ++count.judged;
+      if (f.holds == Finding::Holds::yes)
+        ++count.holds;
+      else
+        count.not_in.push_back(f.holds == Finding::Holds::undecided ? f.scene + " (undecided)" : f.scene);
+    }
+    for (auto& [key, count] : by_claim)
+      counts.rows.push_back(
+          {{key.first, key.second,
+            count.judged == 0 ? std::string("not run")
+                              : unbroken(fmt::format("{} of {}", count.holds, count.judged)),
+            some_of(count.not_in, ", "), count.source},
+           entry_of(key.second),
+           ""});
+    if (each.rows.empty()) return chapter;
+    chapter.blocks.push_back(std::move(counts));
+    chapter.blocks.push_back(std::move(each));
+    return chapter;
+  }
+
   report::Chapter perpetual_chapter() const {
     report::Chapter chapter{"perpetual", "What the fluid's perpetual flow makes of each scene", {}};
     Table table{.id = "perpetual-flow", .title = "the fluid when the solid rests, and later"};
     table.caption =
         "A regularised fluid never stops: whoever reads it picks a time. Here it is read when the "
-        "elasto-viscoplastic run "
-        "of the same solver (else of the other) comes to rest, at two and five times that, and at its end. "
-        "The last "
-        "column is what another choice of that time would have changed; digits beyond the ± of the published "
-        "numbers "
-        "are for that change within one run only.";
-    table.columns = {{"Scene", "", {}, true},
-                     {"Fluid", "", {}, true},
-                     {"Gauge", "", {}, true},
-                     {"Solid rests", "s", {Format::Kind::significant, 3}},
-                     {"Solid, at rest", ""},
-                     {"Fluid then", ""},
-                     {"at twice that", ""},
-                     {"at five times", ""},
-                     {"Fluid's end", "s", {Format::Kind::significant, 3}},
-                     {"Fluid, at its end", ""},
-                     {"Change", ""}};
+        "elasto-viscoplastic run of the same solver (else of the other) comes to rest, at two and five times "
+        "that, "
+        "and at its end; where the solid does not rest, from half of the fluid's own time on. The last "
+        "column is "
+        "what another choice of that time would have changed; its digits are for that change within one run "
+        "only.";
+    table.columns = {{"Scene", "", {}, true},   {"Fluid", "", {}, true},
+                     {"Gauge", "", {}, true},   {"Solid rests", "s", {Format::Kind::significant, 3}},
+                     {"Solid, at rest", ""},    {"Read from", "s", {Format::Kind::significant, 3}},
+                     {"Fluid then", ""},        {"at twice that", ""},
+                     {"at five times", ""},     {"Fluid's end", "s", {Format::Kind::significant, 3}},
+                     {"Fluid, at its end", ""}, {"Change", ""}};
     for (const SceneFound& scene : validation_.scenes) {
       const compare::Gauge& gauge = compare::gauge_of(scene.kind);
       const auto value = [&](const std::optional<double>& v) {
@@ -448,12 +579,12 @@ class ValidationPage {
         if (p.fluid_at.empty()) continue;
         const auto at = [&](double factor) -> std::optional<double> {
           for (const auto& [time, v] : p.fluid_at)
-            if (p.rest && std::abs(time - factor * *p.rest) < 1e-9) return v;
+            if (std::abs(time - factor * p.from) < 1e-9) return v;
           return std::nullopt;
         };
         table.rows.push_back({{scene.name, who(p.solver, p.fluid), gauge.name, cell(p.rest), value(p.solid),
-                               value(at(1.0)), value(at(2.0)), value(at(5.0)), p.fluid_at.back().first,
-                               value(p.fluid_at.back().second), value(drift(p))},
+                               p.from, value(at(1.0)), value(at(2.0)), value(at(5.0)),
+                               p.fluid_at.back().first, value(p.fluid_at.back().second), value(p.change())},
                               entry_of(who(p.solver, p.fluid)),
                               p.rest ? "" : "the solid does not rest"});
       }
@@ -476,21 +607,15 @@ class ValidationPage {
                      {"Least at", "s", {Format::Kind::significant, 3}},
                      {"At the end", "", {Format::Kind::fixed, 2}},
                      {"End", "s", {Format::Kind::significant, 3}},
-                     {"In words", "", {}, true}};
+                     {"Changes then by", "1/s", {Format::Kind::significant, 2}},
+                     {"of what it grows by at rest", "%", {Format::Kind::fixed, 0}}};
     for (const SceneFound& scene : validation_.scenes)
       for (const Flocculation& f : scene.flocculation) {
-        if (!(f.start > 0.0)) continue;
-        const double noticeable = 1e-3 * f.start;
-        const bool falls = f.least<f.start - noticeable, grows = f.end> f.least + noticeable;
-        std::string words = falls ? "falls while it flows" : "does not fall";
-        if (f.held)
-          words += fmt::format("; at rest it recovers by {:.2g} a second", f.growth_at_rest);
-        else
-          words += grows ? fmt::format("; grows again, by {:.2g} of the {:.2g} a second it has at rest",
-                                       (f.end - f.least) / (f.end_at - f.least_at), f.growth_at_rest)
-                         : "; still falling at the end";
-        table.rows.push_back(
-            {{scene.name, f.label, f.start, f.least, f.least_at, f.end, f.end_at, words}, entry_of(f.label)});
+        const int entry = entry_of(who(f.solver, f.model));
+        const double share = f.growth_at_rest > 0.0 ? 100.0 * f.rate_end / f.growth_at_rest : report::none;
+        table.rows.push_back({{scene.name, who(f.solver, f.model), f.start, f.least, f.least_at, f.end,
+                               f.end_at, f.rate_end, f.held ? Table::Cell("rests") : Table::Cell(share)},
+                              entry});
       }
     if (!table.rows.empty()) chapter.blocks.push_back(std::move(table));
     return chapter;

@@ -67,8 +67,11 @@ struct Number {
   std::optional<double> coarse = {};       ///< at the second one
   std::optional<double> uncertainty = {};  ///< of ours, by the two: taken on to zero cell size at first order
   Verdict verdict = Verdict::not_run;
+  std::optional<bool> within =
+      {};                  ///< whether ours itself lies within what is allowed, however well it is known
   std::string words = {};  ///< the verdict in full
   std::string noise = {};  ///< why the run is noisy; empty where it is sound
+  std::string walls_differ = {};  ///< what walls the run does not have as the scene has them, in words
   std::optional<double> difference() const;
 };
 
@@ -82,16 +85,22 @@ struct Perpetual {
   scenes::Model fluid = scenes::Model::papanastasiou;
   std::optional<double> rest = {};   ///< s, of the solid; none: it does not come to rest
   std::optional<double> solid = {};  ///< its gauge then, in the figures' unit
+  double from = 0.0;                 ///< s: the solid's rest; where there is none, half of the fluid's time
   std::vector<std::pair<double, double>> fluid_at =
-      {};  ///< time (s) and gauge: at the solid's rest, later, at the end
+      {};  ///< time (s) and gauge: then, at twice and five times that, at the end
+  /// What another choice of the stopping time would have changed: from `from` to the end.
+  std::optional<double> change() const;
 };
 
 /// How the mean flocculation state goes in one run.
 struct Flocculation {
-  std::string label = {};
+  Solver solver = Solver::mpm;
+  scenes::Model model = scenes::Model::elasto_viscoplastic;
   double start = 0.0, least = 0.0, least_at = 0.0, end = 0.0, end_at = 0.0;
+  double rate_end = 0.0;      ///< 1/s, over the last fifth of the run
   bool held = false;          ///< the run ended at rest
   double growth_at_rest = 0;  ///< 1/s, of the law without flow: it goes on from the run's end
+  bool rises_only = false;    ///< fresh concrete has no flocs to break: nothing falls
 };
 
 /// A run as found.
@@ -104,13 +113,30 @@ struct Found {
   std::string version = {};                   ///< of flowrest, that made it
   std::optional<double> rest = {}, end = {};  ///< s
   std::optional<double> gauge_end = {};       ///< in the figures' unit
-  double cpu = 0.0;                           ///< s
+  std::optional<double> arrival = {};         ///< s, at the end wall
+  std::optional<double> creep = {};  ///< mm/s over the last fifth: of the gauge, or of the height at the end
+                                     ///< wall once the front has arrived there
+  double cpu = 0.0;  ///< s
 };
+
+/// What the papers say of flow and rest beyond their numbers, and whether a run bears it out.
+struct Finding {
+  enum class Holds { yes, no, undecided, not_run };
+  std::string claim = {};   ///< "the fluid does not stop"
+  std::string source = {};  ///< "Yu Table 3, Fig. 20"
+  std::string scene = {};   ///< or several: "six V-funnels"
+  Solver solver = Solver::mpm;
+  std::string law = {};  ///< a model, or "both laws"
+  Holds holds = Holds::not_run;
+  std::string seen = {};  ///< what the runs do, in words
+};
+std::string to_string(Finding::Holds);
 
 /// All that is known of one scene.
 struct SceneFound {
   std::string name = {}, title = {};
   scenes::Kind kind = scenes::Kind::slump;
+  std::optional<double> length_mm = {};  ///< of an L-box's channel
   std::vector<Found> runs = {};
   std::vector<Number> numbers = {};
   std::vector<Perpetual> perpetual = {};
@@ -124,7 +150,11 @@ struct Validation {
   std::vector<report::Entry> entries = {};  ///< a solver and a law each
   std::vector<SceneFound> scenes = {};
   std::vector<PaperItem> items = {};
+  std::vector<Finding> findings = {};
 };
+
+/// What is found of the papers' claims, claim by claim. Runs of the second resolution bear nothing out.
+std::vector<Finding> findings_of(const std::vector<SceneFound>&);
 
 /// Reads whatever runs there are.
 Validation collect(const Folder&, const std::vector<SceneWanted>&, const Options&);
