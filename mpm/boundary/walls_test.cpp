@@ -101,6 +101,7 @@ std::vector<Wall> walls_of_all_kinds() {
   walls[67].motion.velocity = {0.0, 0.0, -0.5};
   walls[68].shape = std::make_shared<HalfSpace>(3, Vector{0.0, 0.3, 0.0}, Vector{0.0, -1.0, 0.0}, extent);
   walls[68].opens_at = 0.3;
+  walls[69].shape = std::make_shared<HalfSpace>(3, Vector{-0.3, -0.3, 0.3}, Vector{1.0, 1.0, -1.0}, extent);
   return walls;
 }
 
@@ -120,12 +121,12 @@ TEST(WallShape, WhatIsNearbySaysOfEveryPlaceInReachWhetherAWallHoldsIt) {
       for (int& c : inside) c = random.integer(0, block_edge - 1);
       const auto slot =
           static_cast<std::uint32_t>((origin[0] + 8) * 36 + (origin[1] + 8) * 6 + origin[2] + 8);
-      // Anywhere in the cell, and from there as far as is reckoned with.
+      // From anywhere in the cell, or from its corners, as far as is reckoned with.
       Vector place, way;
       double length = 0.0;
       for (std::size_t a = 0; a < 3; ++a) {
-        place[a] = (origin[a] + inside[a] + random.uniform()) * cell;
-        way[a] = random.between(-1.0, 1.0);
+        place[a] = (origin[a] + inside[a] + (i % 2 == 0 ? random.uniform() : random.integer(0, 1))) * cell;
+        way[a] = i % 4 == 1 ? place[a] / cell - origin[a] - inside[a] - 0.5 : random.between(-1.0, 1.0);
         length += way[a] * way[a];
       }
       for (std::size_t a = 0; a < 3; ++a) place[a] += wall_reach * cell * way[a] / std::sqrt(length);
