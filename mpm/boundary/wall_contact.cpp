@@ -19,7 +19,7 @@ constexpr double tolerance = 5e-3;
 /// at 0.05 a duct of five cells flows another 8 % slower than at 0.01. Linear functions, whose nodes behind
 /// a wall are heavier, do not gain by less.
 constexpr double light_share_quadratic = 0.01, light_share_linear = 0.05;
-constexpr double smallest_share = 1e-12;
+constexpr std::uint32_t no_node = ~0u;
 
 int floor_divide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -39,7 +39,9 @@ bool WallContact<T>::is_mirrored(const Vector& place) const {
 }
 
 template <class T>
-WallContact<T>::WallContact(const Grid& grid, const std::vector<Wall>& walls) : grid_(grid), walls_(walls) {
+WallContact<T>::WallContact(const Grid& grid, const std::vector<Wall>& walls,
+                            const ContactKernels<T>& kernels)
+    : grid_(grid), walls_(walls), kernels_(kernels) {
   for (std::size_t w = 0; w < walls_.size(); ++w)
     for (const SurfacePoint& at : walls_[w].shape->surface(grid_.cell)) {
       if (is_mirrored(at.place)) continue;
@@ -47,13 +49,17 @@ WallContact<T>::WallContact(const Grid& grid, const std::vector<Wall>& walls) : 
       p.wall = static_cast<std::uint32_t>(w);
       p.at = at;
       points_.push_back(p);
+      ContactPoint<T>& contact = contact_points_.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) contact.normal[c] = static_cast<T>(at.normal[c]);
+      contact.sticks = walls_[w].contact == Contact::stick;
+      contact.friction = walls_[w].contact == Contact::friction ? static_cast<T>(walls_[w].friction) : T(0);
+      contact.missing = T(1);
     }
 }
 
 /// Adds what a point takes from a node; false where the node does not exist.
 template <class T>
-bool WallContact<T>::add_entry(const SparseBlocks& blocks, const int (&node)[3], double weight,
-                               std::vector<Entry>& to) const {
+bool WallContact<T>::add_entry(const SparseBlocks& blocks, const int (&node)[3], double weight) {
   int n[3] = {node[0], node[1], node[2]};
   double sign[3] = {1.0, 1.0, 1.0};
   for (int a = 0; a < grid_.dimension; ++a) {
@@ -78,18 +84,28 @@ bool WallContact<T>::add_entry(const SparseBlocks& blocks, const int (&node)[3],
   const std::uint32_t slot = blocks.slot_of(block);
   if (slot == no_slot) return false;
   const auto cells = static_cast<std::size_t>(power(block_edge, grid_.dimension));
-  const std::size_t record_of_node =
-      (static_cast<std::size_t>(slot) * cells + static_cast<std::size_t>(local)) * node_values;
+  const std::size_t place = static_cast<std::size_t>(slot) * cells + static_cast<std::size_t>(local);
+  std::uint32_t& index = index_of_node_[place];
+  if (index == no_node) {
+    index = static_cast<std::uint32_t>(record_of_node_.size());
+    record_of_node_.push_back(place * node_values);
+  }
   const auto same =
-      std::find_if(to.begin(), to.end(), [&](const Entry& e) { return e.record == record_of_node; });
-  Entry& entry = same == to.end() ? to.emplace_back(Entry{record_of_node, {}, {}, T(0)}) : *same;
-  for (std::size_t c = 0; c < 3; ++c) entry.weight[c] += static_cast<T>(weight * sign[c]);
+      std::find_if(fresh_.begin(), fresh_.end(), [&](const Entry& e) { return e.node == index; });
+  Entry& entry = same == fresh_.end() ? fresh_.emplace_back(Entry{index, {}}) : *same;
+  for (std::size_t c = 0; c < 3; ++c) entry.weight[c] += weight * sign[c];
   return true;
 }
 
+/// Finds the nodes around a point.
 template <class T>
-void WallContact<T>::find_entries(const SparseBlocks& blocks, Point& p) {
+void WallContact<T>::find_entries(const SparseBlocks& blocks, std::size_t point) {
+  const Point& p = points_[point];
   const Wall& wall = walls_[p.wall];
+  fresh_.clear();
+  contact_points_[point].count = 0;
+  contact_points_[point].missing = T(0);
+  if (!wall.stands(time_)) return;
   const Vector shift = wall.motion.displacement(time_);
   const int nodes = grid_.quadratic ? Quadratic::nodes : Linear::nodes;
   int cell[3] = {0, 0, 0};
@@ -103,7 +119,6 @@ void WallContact<T>::find_entries(const SparseBlocks& blocks, Point& p) {
     for (int n = 0; n < nodes; ++n)
       weight[a][n] = grid_.quadratic ? Quadratic::weight(n, x - cell[a]) : Linear::weight(n, x - cell[a]);
   }
-  fresh_.clear();
   double missing = 0.0;
   const int depth = grid_.dimension == 3 ? nodes : 1;
   for (int i = 0; i < nodes; ++i)
@@ -113,191 +128,146 @@ void WallContact<T>::find_entries(const SparseBlocks& blocks, Point& p) {
         const double w = weight[0][i] * weight[1][j] * weight[2][k];
         constexpr double nothing = 1e-12;  // a plane along the grid sees two rows of nodes, not three
         if (w < nothing) continue;
-        if (!add_entry(blocks, node, w, fresh_)) missing += w;
+        if (!add_entry(blocks, node, w)) missing += w;
       }
-  p.first = entries_.size();
-  p.count = fresh_.size();
-  p.missing = static_cast<T>(missing);
-  entries_.insert(entries_.end(), fresh_.begin(), fresh_.end());
+  contact_points_[point].missing = static_cast<T>(missing);
+  keep_entries(point);
+}
+
+/// Writes a point's fresh entries to where it has room for them.
+template <class T>
+void WallContact<T>::keep_entries(std::size_t point) {
+  Room& room = points_[point].room;
+  ContactPoint<T>& p = contact_points_[point];
+  p.count = static_cast<std::uint32_t>(fresh_.size());
+  p.folded = std::any_of(fresh_.begin(), fresh_.end(), [](const Entry& e) {
+    return e.weight[0] != e.weight[1] || e.weight[1] != e.weight[2];
+  });
+  const Room needed = fresh_.empty() ? Room::none : p.folded ? Room::folded : Room::plain;
+  if (room < needed) {
+    room = needed;
+    const auto most =
+        static_cast<std::size_t>(power(grid_.quadratic ? Quadratic::nodes : Linear::nodes, grid_.dimension));
+    p.first = static_cast<std::uint32_t>(node_of_entry_.size());
+    p.first_weight = static_cast<std::uint32_t>(weights_.size());
+    node_of_entry_.resize(node_of_entry_.size() + most);
+    for (auto* of : {&weights_, &effective_, &responses_})
+      of->resize(of->size() + most * (p.folded ? record : 1));
+  }
+  for (std::size_t e = 0; e < fresh_.size(); ++e) {
+    node_of_entry_[p.first + e] = fresh_[e].node;
+    if (p.folded) {
+      for (std::size_t c = 0; c < 3; ++c)
+        weights_[p.first_weight + record * e + c] = static_cast<T>(fresh_[e].weight[c]);
+    } else {
+      weights_[p.first_weight + e] = static_cast<T>(fresh_[e].weight[0]);
+    }
+  }
 }
 
 template <class T>
 void WallContact<T>::place(const SparseBlocks& blocks, double time) {
-  bool anything_new = known_slots_ != blocks.slot_count() || time_ < 0.0;
-  for (const Wall& wall : walls_) {
-    anything_new |= wall.motion.displacement(time) != wall.motion.displacement(time_);
-    anything_new |= wall.stands(time) != wall.stands(time_);
+  const bool new_nodes = known_slots_ != blocks.slot_count();
+  bool anything_new = new_nodes;
+  moved_.assign(walls_.size(), time_ < 0.0);
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const Wall& wall = walls_[w];
+    if (wall.motion.displacement(time) != wall.motion.displacement(time_) ||
+        wall.stands(time) != wall.stands(time_))
+      moved_[w] = true;
+    anything_new |= moved_[w];
   }
   time_ = time;
   if (!anything_new) return;
   known_slots_ = blocks.slot_count();
-  entries_.clear();
-  for (Point& p : points_) {
-    p.stands = walls_[p.wall].stands(time);
-    p.count = 0;
-    if (p.stands) find_entries(blocks, p);
-  }
-}
-
-template <class T>
-void WallContact<T>::gather_mobilities(const T* nodes, double step) {
-  const T light_share = static_cast<T>(grid_.quadratic ? light_share_quadratic : light_share_linear);
-  touched_.clear();
+  index_of_node_.resize(known_slots_ * static_cast<std::size_t>(power(block_edge, grid_.dimension)), no_node);
+  seen_.clear();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    Point& p = points_[i];
-    T heaviest = T(0);
-    Entry* const entries = entries_.data() + p.first;
-    for (std::size_t e = 0; e < p.count; ++e) heaviest = std::max(heaviest, nodes[entries[e].record]);
-    p.touched = p.stands && heaviest > T(0);
-    if (!p.touched) continue;
-    T before = p.missing, after = T(0), mobility[3] = {};
-    for (std::size_t e = 0; e < p.count; ++e) {
-      const T mass = nodes[entries[e].record];
-      const T fading = mass / (mass + light_share * heaviest);
-      entries[e].per_mass = mass > T(smallest_share) * heaviest ? T(1) / mass : T(0);
-      // Shape functions sum to one; so do what is left of them, but for folded nodes, whose sum stays.
-      T largest = T(0);
-      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(entries[e].weight[c]));
-      before += largest;
-      after += largest * fading;
-      for (int c = 0; c < 3; ++c) entries[e].effective[c] = entries[e].weight[c] * fading;
-    }
-    for (std::size_t e = 0; e < p.count; ++e)
-      for (int c = 0; c < grid_.dimension; ++c) {
-        T& weight = entries[e].effective[c];
-        weight *= before / after;
-        mobility[c] += weight * weight * entries[e].per_mass;
-      }
-    // The largest for all directions: they differ only beside folded nodes, where a smaller one errs on the
-    // side of more sweeps.
-    p.mobility = std::max({mobility[0], mobility[1], mobility[2]});
-    p.touched = p.mobility > T(0);
-    for (int c = 0; c < 3; ++c) p.impulse[c] = static_cast<T>(p.force[c] * step);
-    if (p.touched) touched_.push_back(i);
+    ContactPoint<T>& p = contact_points_[i];
+    if (moved_[points_[i].wall] || (new_nodes && p.missing > T(0))) find_entries(blocks, i);
+    if (p.count > 0) seen_.push_back(static_cast<std::uint32_t>(i));
   }
 }
 
 template <class T>
-void WallContact<T>::velocity_at(const Point& p, const T* nodes, T (&v)[3]) const {
-  for (T& component : v) component = T(0);
-  const Entry* const entries = entries_.data() + p.first;
-  for (std::size_t e = 0; e < p.count; ++e) {
-    const T* node = nodes + entries[e].record + 1;
-    for (int c = 0; c < grid_.dimension; ++c) v[c] += entries[e].effective[c] * node[c];
-  }
+ContactView<T> WallContact<T>::view() {
+  return {grid_.dimension,  contact_points_.data(), node_of_entry_.data(),
+          weights_.data(),  effective_.data(),      responses_.data(),
+          velocity_.data(), mass_.data(),           per_mass_.data()};
 }
 
+/// Copies the nodes that points see, finds which points have mass around them, and what a push there does.
 template <class T>
-void WallContact<T>::push(const Point& p, T* nodes, const T (&impulse)[3], int record_offset) const {
-  const Entry* const entries = entries_.data() + p.first;
-  for (std::size_t e = 0; e < p.count; ++e) {
-    T* node = nodes + entries[e].record + record_offset + 1;
-    for (int c = 0; c < grid_.dimension; ++c)
-      node[c] += entries[e].effective[c] * impulse[c] * entries[e].per_mass;
+void WallContact<T>::take_up(const T* nodes) {
+  const std::size_t count = record_of_node_.size();
+  velocity_.resize(record * count);
+  velocity_before_.resize(record * count);
+  mass_.resize(count);
+  per_mass_.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const T* from = nodes + record_of_node_[n];
+    mass_[n] = from[0];
+    per_mass_[n] = from[0] > T(0) ? T(1) / from[0] : T(0);
+    for (std::size_t c = 0; c < 3; ++c) velocity_[record * n + c] = from[1 + c];
   }
+  velocity_before_ = velocity_;
+  kernels_.weigh(view(), static_cast<T>(grid_.quadratic ? light_share_quadratic : light_share_linear),
+                 seen_.data(), seen_.size());
+  touched_.clear();
+  for (const std::uint32_t i : seen_)
+    if (contact_points_[i].mobility > T(0)) touched_.push_back(i);
 }
 
-/// The impulse after which a point moves with its wall, and how much of it is along the normal.
+/// Writes the new velocities to the nodes, and what has changed to their second records.
 template <class T>
-void WallContact<T>::wanted_impulse(const Point& p, const T* nodes, T (&wanted)[3], T& normal) const {
-  T v[3];
-  velocity_at(p, nodes, v);
-  const Vector moving = walls_[p.wall].motion.velocity_at(time_);
-  normal = T(0);
-  for (std::size_t c = 0; c < 3; ++c) {
-    wanted[c] = p.impulse[c] - (v[c] - static_cast<T>(moving[c])) / p.mobility;
-    normal += wanted[c] * static_cast<T>(p.at.normal[c]);
-  }
-}
-
-template <class T>
-T WallContact<T>::change_impulse(Point& p, T* nodes, const T (&wanted)[3]) const {
-  T change[3], size = T(0);
-  for (int c = 0; c < 3; ++c) {
-    change[c] = c < grid_.dimension ? wanted[c] - p.impulse[c] : T(0);
-    p.impulse[c] += change[c];
-    size += change[c] * change[c];
-  }
-  if (size > T(0)) push(p, nodes, change, 0);
-  return std::sqrt(size) * p.mobility;
-}
-
-template <class T>
-T WallContact<T>::relax(Point& p, T* nodes) const {
-  const Wall& wall = walls_[p.wall];
-  T wanted[3], normal;
-  wanted_impulse(p, nodes, wanted, normal);
-  p.pressed = p.stuck = true;
-  if (wall.contact != Contact::stick) {
-    T along[3], square = T(0);
+void WallContact<T>::hand_back(T* nodes, bool change_too) const {
+  for (std::size_t n = 0; n < record_of_node_.size(); ++n) {
+    T* const to = nodes + record_of_node_[n];
     for (std::size_t c = 0; c < 3; ++c) {
-      along[c] = wanted[c] - normal * static_cast<T>(p.at.normal[c]);
-      square += along[c] * along[c];
+      const T v = velocity_[record * n + c];
+      to[1 + c] = v;
+      if (change_too) to[record + 1 + c] += v - velocity_before_[record * n + c];
     }
-    const T pressed = std::max(normal, T(0));
-    const T limit = wall.contact == Contact::slip ? T(0) : static_cast<T>(wall.friction) * pressed;
-    const T length = std::sqrt(square);
-    const T share = length > limit ? limit / length : T(1);
-    for (std::size_t c = 0; c < 3; ++c)
-      wanted[c] = pressed * static_cast<T>(p.at.normal[c]) + share * along[c];
-    p.pressed = normal > T(0);
-    p.stuck = p.pressed && share == T(1) && wall.contact == Contact::friction;
   }
-  return change_impulse(p, nodes, wanted);
 }
 
 template <class T>
-T WallContact<T>::relax_as_before(Point& p, T* nodes) const {
-  if (!p.pressed) return T(0);
-  T wanted[3], normal;
-  wanted_impulse(p, nodes, wanted, normal);
-  if (!p.stuck)
-    for (std::size_t c = 0; c < 3; ++c) wanted[c] = normal * static_cast<T>(p.at.normal[c]);
-  return change_impulse(p, nodes, wanted);
-}
-
-template <class T>
-void WallContact<T>::sweep_to_rest(T* nodes, double drive, Relax how) {
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    T worst = T(0);
-    if (sweep % 2 == 0) {
-      for (const std::size_t i : touched_) worst = std::max(worst, (this->*how)(points_[i], nodes));
-    } else {
-      for (std::size_t n = touched_.size(); n-- > 0;)
-        worst = std::max(worst, (this->*how)(points_[touched_[n]], nodes));
-    }
-    if (worst <= static_cast<T>(tolerance * drive)) break;
-  }
+void WallContact<T>::sweep_to_rest(double drive, Relaxation how) {
+  const auto enough = static_cast<T>(tolerance * drive);
+  for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    if (kernels_.sweep(view(), how, sweep % 2 != 0, touched_.data(), touched_.size()) <= enough * enough)
+      break;
 }
 
 template <class T>
 double WallContact<T>::apply(T* nodes, double step, double drive) {
-  gather_mobilities(nodes, step);
-  for (const std::size_t i : touched_) push(points_[i], nodes, points_[i].impulse, 0);
-  sweep_to_rest(nodes, drive, &WallContact::relax);
-  double work = 0.0;
+  take_up(nodes);
+  for (const std::uint32_t i : touched_) {
+    const Vector moving = walls_[points_[i].wall].motion.velocity_at(time_);
+    for (std::size_t c = 0; c < 3; ++c) {
+      contact_points_[i].wall_velocity[c] = static_cast<T>(moving[c]);
+      contact_points_[i].impulse[c] = static_cast<T>(points_[i].force[c] * step);
+    }
+  }
+  kernels_.push(view(), touched_.data(), touched_.size());
+  sweep_to_rest(drive, Relaxation::lawful);
   for (Point& p : points_)
     for (double& f : p.force) f = 0.0;
-  for (const std::size_t i : touched_) {
-    Point& p = points_[i];
-    // With the velocities that strain and move the material, as the stress does its work.
-    T v[3];
-    velocity_at(p, nodes, v);
-    for (std::size_t c = 0; c < 3; ++c) {
-      work += static_cast<double>(p.impulse[c]) * static_cast<double>(v[c]);
-      p.force[c] = static_cast<double>(p.impulse[c]) / step;
-    }
-    push(p, nodes, p.impulse, record);
-  }
-  return work;
+  for (const std::uint32_t i : touched_)
+    for (std::size_t c = 0; c < 3; ++c)
+      points_[i].force[c] = static_cast<double>(contact_points_[i].impulse[c]) / step;
+  hand_back(nodes, true);
+  // With the velocities that strain and move the material, as the stress does its work.
+  return kernels_.work(view(), touched_.data(), touched_.size());
 }
 
 template <class T>
-void WallContact<T>::apply_to_remapped(T* nodes, double step, double drive) {
-  gather_mobilities(nodes, step);
-  for (const std::size_t i : touched_)
-    for (T& component : points_[i].impulse) component = T(0);
-  sweep_to_rest(nodes, drive, &WallContact::relax_as_before);
+void WallContact<T>::apply_to_remapped(T* nodes, double drive) {
+  take_up(nodes);
+  for (const std::uint32_t i : touched_)
+    for (T& component : contact_points_[i].impulse) component = T(0);
+  sweep_to_rest(drive, Relaxation::as_before);
+  hand_back(nodes, false);
 }
 
 template <class T>

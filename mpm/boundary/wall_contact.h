@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mpm/boundary/contact_points.h"
 #include "mpm/boundary/walls.h"
 #include "mpm/solver/sparse_blocks.h"
 
@@ -18,6 +19,8 @@ namespace flowrest::mpm {
 /// Gauss-Seidel sweeps that start from the last step's forces, in a fixed order: the same for any number of
 /// threads.
 ///
+/// The nodes that points see are copied side by side for the sweeps, which the kernels do (contact_sweeps.h).
+///
 /// Nodes behind a plane wall along the grid (plane_walls.h) are folded onto their images: their weights go to
 /// the image with the sign of the mirrored body.
 template <class T>
@@ -29,7 +32,7 @@ class WallContact {
     double cell = 0.0;  ///< m
     std::array<AxisBounds, 3> bounds{};
   };
-  WallContact(const Grid&, const std::vector<Wall>&);
+  WallContact(const Grid&, const std::vector<Wall>&, const ContactKernels<T>&);
 
   /// Notes which walls stand and where they are at `time`, and which nodes exist.
   void place(const SparseBlocks&, double time);
@@ -43,7 +46,7 @@ class WallContact {
   /// is held as the step's own contact was: pressed points stay on the wall both ways (held one way only,
   /// noise would be rectified and pump the body up), stuck ones stay stuck, the rest is left alone. Forces
   /// stay.
-  void apply_to_remapped(T* nodes, double step, double drive);
+  void apply_to_remapped(T* nodes, double drive);
 
   /// Sum over a wall's points of the force it put on the material in the last step, N.
   Vector force(std::size_t wall) const;
@@ -56,46 +59,41 @@ class WallContact {
   void set_forces(const std::vector<double>&);
 
  private:
-  /// What a point takes from a node, per velocity component: a folded node's weight may change sign.
-  struct Entry {
-    std::size_t record;  ///< offset of the node's record
-    T weight[3];         ///< of the shape functions
-    T effective[3];      ///< of this step: less where the node is light
-    T per_mass;          ///< 1/kg, zero where it carries nothing
-  };
+  enum class Room : std::uint8_t { none, plain, folded };
   struct Point {
     std::uint32_t wall = 0;
     SurfacePoint at;
-    bool stands = true;
-    std::size_t first = 0, count = 0;     ///< of its entries
-    T missing{};                          ///< sum of the weights of nodes that do not exist
-    bool touched = false;                 ///< nodes around it carry mass
-    T mobility{};                         ///< velocity per impulse, 1/kg
-    T impulse[3]{};                       ///< kg m/s
-    bool pressed = false, stuck = false;  ///< at the end of the step's contact
-    double force[3]{};                    ///< N, of the last step
+    Room room = Room::none;  ///< for its entries
+    double force[3]{};       ///< N, of the last step
+  };
+  /// What a point takes from a node, per velocity component: a folded node's weight may change sign.
+  struct Entry {
+    std::uint32_t node;
+    double weight[3];
   };
 
   bool is_mirrored(const Vector& place) const;
-  void find_entries(const SparseBlocks&, Point&);
-  bool add_entry(const SparseBlocks&, const int (&node)[3], double weight, std::vector<Entry>&) const;
-  void gather_mobilities(const T* nodes, double step);
-  /// Corrects one point's impulse to what its velocity asks for and what is allowed; returns the change of
-  /// velocity, m/s.
-  using Relax = T (WallContact::*)(Point&, T* nodes) const;
-  void sweep_to_rest(T* nodes, double drive, Relax);
-  T relax(Point&, T* nodes) const;
-  T relax_as_before(Point&, T* nodes) const;
-  T change_impulse(Point&, T* nodes, const T (&wanted)[3]) const;
-  void wanted_impulse(const Point&, const T* nodes, T (&wanted)[3], T& normal) const;
-  void velocity_at(const Point&, const T* nodes, T (&v)[3]) const;
-  void push(const Point&, T* nodes, const T (&impulse)[3], int record_offset) const;
+  void find_entries(const SparseBlocks&, std::size_t point);
+  bool add_entry(const SparseBlocks&, const int (&node)[3], double weight);
+  void keep_entries(std::size_t point);
+  void take_up(const T* nodes);
+  void hand_back(T* nodes, bool change_too) const;
+  void sweep_to_rest(double drive, Relaxation);
+  ContactView<T> view();
 
   Grid grid_;
   std::vector<Wall> walls_;
+  ContactKernels<T> kernels_;
   std::vector<Point> points_;
-  std::vector<Entry> entries_, fresh_;
-  std::vector<std::size_t> touched_;
+  std::vector<ContactPoint<T>> contact_points_;  ///< the same
+  std::vector<std::uint32_t> seen_, touched_;  ///< those that nodes lie around, and of these those with mass
+  std::vector<Entry> fresh_;
+  std::vector<std::uint32_t> node_of_entry_;
+  std::vector<T> weights_, effective_, responses_;
+  std::vector<std::uint32_t> index_of_node_;  ///< by slot and place in the block
+  std::vector<std::size_t> record_of_node_;   ///< offset of its record
+  std::vector<T> velocity_, velocity_before_, mass_, per_mass_;
+  std::vector<bool> moved_;
   std::size_t known_slots_ = 0;
   double time_ = -1.0;
 };

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/boundary/contact_points.h"
 #include "mpm/material/equation_of_state.h"
 #include "mpm/material/flow_law.h"
 #include "mpm/solver/layout.h"
@@ -77,6 +78,7 @@ struct Kernels {
                                        ///< linear: velocities, and their momentum re-mapped into the arena
   NodeStage<T> remap_nodes = nullptr;  ///< linear only (MUSL)
   BlockStage<T> remapped_to_particles = nullptr;  ///< linear only (MUSL): strain, stress, positions
+  ContactKernels<T> contact{};                    ///< with walls of any shape
 };
 
 /// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or

@@ -155,7 +155,7 @@ class SolverOf final : public Solver {
     contact_ = std::make_unique<WallContact<T>>(
         typename WallContact<T>::Grid{settings.dimension, settings.transfer == Transfer::quadratic_apic,
                                       settings.cell, settings.bounds},
-        settings.walls);
+        settings.walls, kernels_.contact);
     nearby_walls_ = std::make_unique<NearbyWalls>(settings_.walls, settings.dimension, settings.cell);
     p.walls = this;
     p.keep_out = [](const void* self, WallSet near, double(&place)[3]) {
@@ -282,7 +282,7 @@ class SolverOf final : public Solver {
         over_nodes(kernels_.remap_nodes);
         if (contact_) {
 #pragma omp single
-          contact_->apply_to_remapped(nodes, static_cast<double>(parameters_.step), drive_);
+          contact_->apply_to_remapped(nodes, drive_);
         }
         mark(4);
         over_blocks(kernels_.remapped_to_particles);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mpm/boundary/contact_sweeps.h"
 #include "mpm/transfer/grid_to_particles.h"
 #include "mpm/transfer/nodes.h"
 #include "mpm/transfer/particles_to_grid.h"
@@ -15,13 +16,15 @@ Kernels<T> make_kernels(Transfer transfer) {
             update_nodes<T, Dim, false>,
             apic_to_particles<T, Dim, Axisymmetric>,
             nullptr,
-            nullptr};
+            nullptr,
+            contact_kernels<T>()};
   return {Dim,
           particles_to_grid<T, Dim, Axisymmetric, Linear>,
           update_nodes<T, Dim, false>,
           flip_to_particles<T, Dim>,
           update_nodes<T, Dim, true>,
-          remapped_to_particles<T, Dim, Axisymmetric>};
+          remapped_to_particles<T, Dim, Axisymmetric>,
+          contact_kernels<T>()};
 }
 
 template <class T>
