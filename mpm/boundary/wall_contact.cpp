@@ -100,7 +100,7 @@ bool WallContact<T>::add_entry(const SparseBlocks& blocks, const int (&node)[3],
 /// Finds the nodes around a point.
 template <class T>
 void WallContact<T>::find_entries(const SparseBlocks& blocks, std::size_t point) {
-  const Point& p = points_[point];
+  Point& p = points_[point];
   const Wall& wall = walls_[p.wall];
   fresh_.clear();
   contact_points_[point].count = 0;
@@ -116,6 +116,7 @@ void WallContact<T>::find_entries(const SparseBlocks& blocks, std::size_t point)
     // On the cell before the wall where the point lies on a face: that one exists where there is material.
     constexpr double inwards = 1e-9;
     cell[a] = static_cast<int>(std::floor(x + inwards * p.at.normal[axis]));
+    p.block[axis] = floor_divide(cell[a], block_edge);
     for (int n = 0; n < nodes; ++n)
       weight[a][n] = grid_.quadratic ? Quadratic::weight(n, x - cell[a]) : Linear::weight(n, x - cell[a]);
   }
@@ -165,10 +166,17 @@ void WallContact<T>::keep_entries(std::size_t point) {
   }
 }
 
+/// Whether a point may see nodes of a block.
+template <class T>
+bool WallContact<T>::is_near(const Point& p, const std::array<std::int32_t, 3>& block) const {
+  for (std::size_t a = 0; a < static_cast<std::size_t>(grid_.dimension); ++a)
+    if (std::abs(p.block[a] - block[a]) > 1 && !grid_.bounds[a].periodic) return false;
+  return true;
+}
+
 template <class T>
 void WallContact<T>::place(const SparseBlocks& blocks, double time) {
-  const bool new_nodes = known_slots_ != blocks.slot_count();
-  bool anything_new = new_nodes;
+  bool anything_new = known_slots_ != blocks.slot_count();
   moved_.assign(walls_.size(), time_ < 0.0);
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const Wall& wall = walls_[w];
@@ -179,12 +187,17 @@ void WallContact<T>::place(const SparseBlocks& blocks, double time) {
   }
   time_ = time;
   if (!anything_new) return;
-  known_slots_ = blocks.slot_count();
+  std::vector<std::array<std::int32_t, 3>> new_blocks;
+  for (; known_slots_ < blocks.slot_count(); ++known_slots_)
+    new_blocks.push_back(blocks.block(static_cast<std::uint32_t>(known_slots_)));
   index_of_node_.resize(known_slots_ * static_cast<std::size_t>(power(block_edge, grid_.dimension)), no_node);
   seen_.clear();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    ContactPoint<T>& p = contact_points_[i];
-    if (moved_[points_[i].wall] || (new_nodes && p.missing > T(0))) find_entries(blocks, i);
+    const ContactPoint<T>& p = contact_points_[i];
+    const auto may_see = [&](const auto& block) { return is_near(points_[i], block); };
+    if (moved_[points_[i].wall] ||
+        (p.missing > T(0) && std::any_of(new_blocks.begin(), new_blocks.end(), may_see)))
+      find_entries(blocks, i);
     if (p.count > 0) seen_.push_back(static_cast<std::uint32_t>(i));
   }
 }

@@ -63,8 +63,9 @@ class WallContact {
   struct Point {
     std::uint32_t wall = 0;
     SurfacePoint at;
-    Room room = Room::none;  ///< for its entries
-    double force[3]{};       ///< N, of the last step
+    Room room = Room::none;               ///< for its entries
+    std::array<std::int32_t, 3> block{};  ///< that it lies in; its nodes may be in the next ones, too
+    double force[3]{};                    ///< N, of the last step
   };
   /// What a point takes from a node, per velocity component: a folded node's weight may change sign.
   struct Entry {
@@ -73,6 +74,7 @@ class WallContact {
   };
 
   bool is_mirrored(const Vector& place) const;
+  bool is_near(const Point&, const std::array<std::int32_t, 3>& block) const;
   void find_entries(const SparseBlocks&, std::size_t point);
   bool add_entry(const SparseBlocks&, const int (&node)[3], double weight);
   void keep_entries(std::size_t point);

@@ -79,6 +79,7 @@ class SparseBlocks {
   void clear_sums(std::uint32_t slot) { slots_[slot].sums = {}; }
   std::size_t fullest_cell() const { return fullest_cell_; }
 
+  const std::array<std::int32_t, 3>& block(std::uint32_t slot) const { return slots_[slot].block; }
   /// Slot of a block of cells, wrapped where periodic; no_slot where it does not exist.
   std::uint32_t slot_of(std::array<std::int32_t, 3> block) const {
     wrap(block);
