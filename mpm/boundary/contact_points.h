@@ -23,6 +23,7 @@ struct ContactPoint {
   T missing{};                          ///< sum of the weights of nodes that do not exist
   T mobility{};                         ///< velocity per impulse, 1/kg; zero where nothing touches the point
   T per_mobility{};
+  T change{};  ///< of its velocity when it was relaxed last, squared, m2/s2
 };
 
 /// Points, their entries (what a point takes from a node) and the nodes they see.
@@ -45,6 +46,14 @@ enum class Relaxation {
   as_before,  ///< pressed points stay on the wall, stuck ones stay stuck, the rest is left alone
 };
 
+/// One sweep over points.
+template <class T>
+struct Sweeping {
+  Relaxation how = Relaxation::lawful;
+  bool backwards = false;  ///< from the last point to the first
+  T settled{};  ///< points whose velocity changed by no more when last asked are passed over, m2/s2
+};
+
 /// What an instruction set does for wall contact. Points are given by their indices.
 template <class T>
 struct ContactKernels {
@@ -54,11 +63,9 @@ struct ContactKernels {
                 std::size_t count) = nullptr;
   /// Gives the points' impulses to the nodes.
   void (*push)(const ContactView<T>&, const std::uint32_t* points, std::size_t count) = nullptr;
-  /// Corrects the points one after the other, from the last to the first if `backwards`; returns the square
-  /// of the largest change of velocity, m2/s2.
-  T (*sweep)
-  (const ContactView<T>&, Relaxation, bool backwards, const std::uint32_t* points,
-   std::size_t count) = nullptr;
+  /// Corrects one point after the other; returns the square of the largest change of velocity, m2/s2.
+  T(*sweep)
+  (const ContactView<T>&, const Sweeping<T>&, const std::uint32_t* points, std::size_t count) = nullptr;
   /// Work that the impulses do at the points' velocities, J.
   double (*work)(const ContactView<T>&, const std::uint32_t* points, std::size_t count) = nullptr;
 };

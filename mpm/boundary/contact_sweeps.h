@@ -148,12 +148,14 @@ void push_points(const ContactView<T>& view, const std::uint32_t* points, std::s
 }
 
 template <class T>
-T sweep_points(const ContactView<T>& view, Relaxation how, bool backwards, const std::uint32_t* points,
+T sweep_points(const ContactView<T>& view, const Sweeping<T>& sweep, const std::uint32_t* points,
                std::size_t count) {
   T worst = T(0);
   for (std::size_t i = 0; i < count; ++i) {
-    ContactPoint<T>& p = view.points[points[backwards ? count - 1 - i : i]];
-    worst = maximum(worst, p.folded ? relax_point<true>(view, how, p) : relax_point<false>(view, how, p));
+    ContactPoint<T>& p = view.points[points[sweep.backwards ? count - 1 - i : i]];
+    if (p.change <= sweep.settled) continue;
+    p.change = p.folded ? relax_point<true>(view, sweep.how, p) : relax_point<false>(view, sweep.how, p);
+    worst = maximum(worst, p.change);
   }
   return worst;
 }
