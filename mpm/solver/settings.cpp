@@ -82,6 +82,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
   s.density_correction = density_correction(scene);
+  s.free_surface = scene.kind != scenes::Kind::duct;
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);

@@ -27,6 +27,7 @@ struct SolverSettings {
   double density = 0.0;               ///< kg/m3
   double flip_relaxation_time = 0.0;  ///< s; infinite for pure FLIP
   double density_correction = 0.0;    ///< share of an overlap of particles taken back per unit strain
+  bool free_surface = true;
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};

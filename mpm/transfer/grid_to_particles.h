@@ -54,17 +54,31 @@ void refer_to_midpoint(const StepParameters<T>& step, const Strain<T, Dim>& s, i
   }
 }
 
-/// Takes back what particles overlap. A sum over a cell's particles is not an integral over the cell: where
+/// Filling below which a particle belongs to a drop. At a plane surface it is a half, at an edge a quarter.
+constexpr double drop_filling = 0.2;
+
+/// What a particle makes of its surroundings' filling.
+///
+/// Less than a body has: a drop of a few particles. What it pushes are nodes that carry nothing else, and
+/// near a cell's face one of them weighs next to nothing: over a step that is long enough for a body, its
+/// pressure swings ever wider until it leaps off the wall or the grid. So the less there is around it, the
+/// less of the strain it feels is its own; it flies, lands and is pushed as before.
+///
+/// More than full: particles overlap. A sum over a cell's particles is not an integral over the cell: where
 /// material is sheared for long, particles drift together while the divergence they see is zero, and the body
 /// sinks into itself unnoticed by the volume they carry. A particle whose surroundings are fuller than full
 /// is told that it is compressed, at a rate in proportion to the shearing that drives the drift, so that what
 /// is at rest stays so; its pressure then makes room. Gaps are left alone: under a free surface they are
 /// there by right, and closing them pulls a thin front back.
 template <class T, int Dim>
-void correct_density(const StepParameters<T>& step, const Strain<T, Dim>& s, const T* filling, int count) {
+void heed_filling(const StepParameters<T>& step, const Strain<T, Dim>& s, const T* filling, int count) {
 #pragma omp simd
-  for (int q = 0; q < count; ++q)
-    s.dilatation[q] -= step.density_correction * s.rate[q] * maximum(filling[q] - T(1), T(0));
+  for (int q = 0; q < count; ++q) {
+    const T share = minimum(filling[q] * T(1.0 / drop_filling), T(1));
+    const T overlap = maximum(filling[q] - T(1), T(0));
+    s.dilatation[q] = s.dilatation[q] * share * share * (Dim == 3 ? share : T(1)) -
+                      step.density_correction * s.rate[q] * overlap;
+  }
 }
 
 /// Strain and averaged dilatation of a tile from its velocity gradients.
@@ -97,7 +111,7 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     volume[q] = mass[q] * s.ratio[q];
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
-  if (filling) correct_density<T, Dim>(step, s, filling, count);
+  if (filling) heed_filling<T, Dim>(step, s, filling, count);
   average_over_cells(tile, volume, s.dilatation);
 }
 
@@ -224,7 +238,7 @@ void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles,
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
     const Gathered<T, Dim> motion = room_for_gathered<T, Dim>(tile, motion_wanted);
     const Gathered<T, Dim> increment = kept ? room_for_gathered<T, Dim>(tile, increment_wanted) : motion;
-    T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
+    T* filling = step.filling_matters ? tile.fresh() : nullptr;
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
@@ -325,7 +339,7 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
     for (int a = 0; a < Dim; ++a) advection[a] = tile.open(particles.advection[a]);
     const Gathered<T, Dim> g = room_for_gathered<T, Dim>(tile, wanted);
-    T* filling = step.density_correction > T(0) ? tile.fresh() : nullptr;
+    T* filling = step.filling_matters ? tile.fresh() : nullptr;
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
       const int n = tile.cell_count(cell), first = tile.cell_first(cell);
       if (n == 0) continue;
