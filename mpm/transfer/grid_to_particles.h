@@ -290,7 +290,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
   load_arena<T, Dim, Linear>(step, block, nodes, arena);
   T* remapped = arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
   for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
-  using Momentum = Source<T, Dim, false, record>;
+  using Momentum = Source<T, Dim, 0, record>;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *v[Dim];
@@ -320,7 +320,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
-        scatter<T, Dim, Linear, false>(remapped + cell_base<T, Dim>(cell) * node_values, momentum, weights,
+        scatter<T, Dim, Linear, 0>(remapped + cell_base<T, Dim>(cell) * node_values, momentum, weights,
                                        tile.cell_first(cell), tile.cell_count(cell));
   }
 }

@@ -10,12 +10,31 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// One particle's contribution to the node records around it: the product of the axes' weights times
 /// `value`, and for every axis `term`, which takes the place of that axis' weight in the product and `value`:
 /// for its first and last node what the particle brings beyond the plain weight (weight and offset times the
-/// affine part, slope times the stress). Over an axis' nodes terms sum to nothing.
-template <class T, int Dim, bool Terms, int Values>
+/// affine part, slope times the stress). Over an axis' nodes terms sum to nothing, so that linear functions
+/// need one side's, that of the last node; without sides there are none.
+template <class T, int Dim, int Sides, int Values>
 struct Source {
   T value[Values];
-  T term[Terms ? Dim : 1][Terms ? 2 : 1][Values];
+  T term[Dim][Sides][Values];
 };
+template <class T, int Dim, int Values>
+struct Source<T, Dim, 0, Values> {
+  T value[Values];
+};
+template <class Shape>
+constexpr int term_sides = Shape::nodes - 1;
+
+/// Adds an axis' term for the node on a side.
+template <int Sides, class R>
+FLOWREST_INLINE void add_term(R& sum, const R (&term)[2], int side) {
+  if (Sides == 2) {
+    sum += term[side];
+  } else if (side == 1) {
+    sum += term[0];
+  } else {
+    sum -= term[0];
+  }
+}
 
 /// A slab of a cell's nodes across the first axis, as sums over the particles: of the plain contribution, of
 /// those with the first and the last node's weight along each axis.
@@ -39,8 +58,8 @@ constexpr int side_of(int function) {
 
 /// Sums one slab, that of function `I` of the first axis, over the particles [first, first + count) of a
 /// cell. The sums stay in registers.
-template <class T, int Dim, class Shape, bool Terms, int Values, int I>
-FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const Weights<T, Dim, Shape>& w,
+template <class T, int Dim, class Shape, int Sides, int Values, int I>
+FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const Weights<T, Dim, Shape>& w,
                               int first, int count, Slab<T, Dim, Shape, Values>& slab) {
   constexpr int nodes = Shape::nodes, rows = slab.rows, last = Dim - 1;
   constexpr bool plain = is_plain<Shape>(I);
@@ -54,10 +73,14 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const
     const auto& s = source[q];
     R here = record_at<Values>(s.value), row[2], along[2];
     if constexpr (!plain) here *= w.weight[0][side_of<Shape>(I)][q];
-    if constexpr (Terms) {
-      if constexpr (!plain) here += record_at<Values>(s.term[0][side_of<Shape>(I)]);
+    if constexpr (Sides > 0) {
+      if constexpr (!plain) {
+        R across[2];
+        for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(s.term[0][side]);
+        add_term<Sides>(here, across, side_of<Shape>(I));
+      }
 #pragma GCC unroll 2
-      for (int side = 0; side < 2; ++side) {
+      for (int side = 0; side < Sides; ++side) {
         if constexpr (Dim == 3) {
           row[side] = record_at<Values>(s.term[1][side]);
           if constexpr (!plain) row[side] *= w.weight[0][side_of<Shape>(I)][q];
@@ -69,17 +92,14 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const
 #pragma GCC unroll 3
     for (int j = 0; j < rows; ++j) {
       R line = here, line_along[2];
-      if constexpr (Terms) {
-        line_along[0] = along[0];
-        line_along[1] = along[1];
-      }
+      if constexpr (Sides > 0)
+        for (int side = 0; side < Sides; ++side) line_along[side] = along[side];
       if (Dim == 3 && !is_plain<Shape>(j)) {
         const T wj = w.weight[1][side_of<Shape>(j)][q];
         line *= wj;
-        if constexpr (Terms) {
-          line += row[side_of<Shape>(j)];
-          line_along[0] *= wj;
-          line_along[1] *= wj;
+        if constexpr (Sides > 0) {
+          add_term<Sides>(line, row, side_of<Shape>(j));
+          for (int side = 0; side < Sides; ++side) line_along[side] *= wj;
         }
       }
 #pragma GCC unroll 3
@@ -88,7 +108,7 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const
           sum[j][k] += line;
         } else {
           sum[j][k] += w.weight[last][side_of<Shape>(k)][q] * line;
-          if constexpr (Terms) sum[j][k] += line_along[side_of<Shape>(k)];
+          if constexpr (Sides > 0) add_term<Sides>(sum[j][k], line_along, side_of<Shape>(k));
         }
       }
     }
@@ -109,14 +129,14 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Terms, Values>* source, const
 }
 
 /// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
-template <class T, int Dim, class Shape, bool Terms, int Values>
-void scatter(T* arena_cell, const Source<T, Dim, Terms, Values>* source, const Weights<T, Dim, Shape>& w,
+template <class T, int Dim, class Shape, int Sides, int Values>
+void scatter(T* arena_cell, const Source<T, Dim, Sides, Values>* source, const Weights<T, Dim, Shape>& w,
              int first, int count) {
   constexpr int nodes = Shape::nodes;
   Slab<T, Dim, Shape, Values> slabs[nodes];
-  sum_slab<T, Dim, Shape, Terms, Values, 0>(source, w, first, count, slabs[0]);
-  sum_slab<T, Dim, Shape, Terms, Values, 1>(source, w, first, count, slabs[1]);
-  if constexpr (nodes == 3) sum_slab<T, Dim, Shape, Terms, Values, 2>(source, w, first, count, slabs[2]);
+  sum_slab<T, Dim, Shape, Sides, Values, 0>(source, w, first, count, slabs[0]);
+  sum_slab<T, Dim, Shape, Sides, Values, 1>(source, w, first, count, slabs[1]);
+  if constexpr (nodes == 3) sum_slab<T, Dim, Shape, Sides, Values, 2>(source, w, first, count, slabs[2]);
 #pragma GCC unroll 3
   for (int j = 0; j < slabs[0].rows; ++j)
 #pragma GCC unroll 3
@@ -144,7 +164,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
                        const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
   constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
   constexpr int arena_values = nodes_per_arena<Dim> * node_values;
-  using Sources = Source<T, Dim, true, node_values>;
+  constexpr int sides = term_sides<Shape>;
+  using Sources = Source<T, Dim, sides, node_values>;
   T* arena = arenas + static_cast<std::size_t>(block.arena) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
@@ -181,12 +202,13 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         per_radius[q] = T(1) / (step.cell * maximum(radial[q] + x[0][q], T(1e-6)));
     }
 
-    // What an axis' first and last node take of a particle's affine part and of its stress.
+    // What an axis' first and last node (linear: the last) take of a particle's affine part and of its
+    // stress.
     const T dt = step.step, impulse_per_cell = dt / step.cell;
     T *slant[Dim][2], *push[Dim][2];
     for (int a = 0; a < Dim; ++a)
-      for (int side = 0; side < 2; ++side) {
-        const int node = outer_node<Shape>(side);
+      for (int side = 0; side < sides; ++side) {
+        const int node = outer_node<Shape>(side + 2 - sides);
         T* const to_push = push[a][side] = tile.fresh();
         T* const to_slant = slant[a][side] = affine ? tile.fresh() : nullptr;
 #pragma omp simd
@@ -250,7 +272,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
           transpose<T>(slants);
         }
 #pragma GCC unroll 2
-        for (int side = 0; side < 2; ++side)
+        for (int side = 0; side < sides; ++side)
 #pragma GCC unroll 4
           for (int n = 0; n < record; ++n) {
             T* const term = sources[q + n].term[a][side];
@@ -265,7 +287,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       if (n == 0) continue;
       const int first = tile.cell_first(cell);
       T* base = arena + cell_base<T, Dim>(cell) * node_values;
-      scatter<T, Dim, Shape, true>(base, sources, weights, first, n);
+      scatter<T, Dim, Shape, sides>(base, sources, weights, first, n);
       if (centroid) {
         // B-bar at the centroid: the pressure's work is done by the divergence at the cell's centre alone.
         T thrust = T(0);
