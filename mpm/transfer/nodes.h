@@ -10,36 +10,42 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// stays as it was.
 template <class T, int Dim, bool Remap>
 void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
-  constexpr int records = Remap ? 1 : 2;
-  T* out = nodes + static_cast<std::size_t>(view.slot) * cells_per_block<Dim> * node_values;
-  for (int node = 0; node < cells_per_block<Dim>; ++node) {
-    int c[3];
-    cell_coordinates<T, Dim>(node, c);
-    Record<T> sum[records];
-    // By index: a deduced reference would lose the records' alignment, which is that of one number.
-    for (int r = 0; r < records; ++r) sum[r] = Record<T>{};
-    for (int delta = 0; delta < (1 << Dim); ++delta) {
-      const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
-      const std::uint32_t arena = view.minus[delta];
-      if (arena == no_slot) continue;
-      const int i = c[0] + di * block_edge, j = c[1] + dj * block_edge, k = c[2] + dk * block_edge;
-      if (i >= arena_edge || j >= arena_edge || k >= arena_edge) continue;
-      const T* from =
-          arenas +
-          (static_cast<std::size_t>(arena) * nodes_per_arena<Dim> + arena_index<Dim>(i, j, k)) * node_values;
-      for (int r = 0; r < records; ++r) sum[r] += record_at(from + r * record);
-    }
-    const T mass = sum[0][0];
+  constexpr int values = cells_per_block<Dim> * node_values, beyond = arena_edge - block_edge;
+  alignas(64) T sums[values];
+  for (int n = 0; n < values; ++n) sums[n] = T(0);
+  for (int delta = 0; delta < (1 << Dim); ++delta) {
+    const std::uint32_t arena = view.minus[delta];
+    if (arena == no_slot) continue;
+    // Of its own block an arena has every node, of a block beyond it the first few layers.
+    const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
+    const int rows = Dim == 3 ? (dj == 0 ? block_edge : beyond) : 1;
+    const T* from = arenas + static_cast<std::size_t>(arena) * nodes_per_arena<Dim> * node_values;
+    for (int i = 0; i < (di == 0 ? block_edge : beyond); ++i)
+      for (int j = 0; j < rows; ++j) {
+        const T* row =
+            from + arena_index<Dim>(i + di * block_edge, j + dj * block_edge, dk * block_edge) * node_values;
+        T* to = sums + (Dim == 3 ? i * block_edge + j : i) * block_edge * node_values;
+        if (dk == 0) {
+          for (int n = 0; n < block_edge * node_values; ++n) to[n] += row[n];
+        } else {
+          for (int n = 0; n < beyond * node_values; ++n) to[n] += row[n];
+        }
+      }
+  }
+  T* out = nodes + static_cast<std::size_t>(view.slot) * values;
+  for (int node = 0; node < values; node += node_values) {
+    const Record<T> carried = record_at(sums + node), forced = record_at(sums + node + record);
+    const T mass = carried[0];
     const T per_mass = mass > step.smallest_mass ? T(1) / mass : T(0);
     if constexpr (Remap) {
-      record_at(out + node * node_values) = sum[0] * per_mass;
+      record_at(out + node) = carried * per_mass;
     } else {
-      const Record<T> velocity = (sum[0] + sum[1]) * per_mass;
-      record_at(out + node * node_values) = velocity;
-      record_at(out + node * node_values + record) = velocity - sum[0] * (step.keep * per_mass);
-      out[node * node_values + record] = sum[1][0];
+      const Record<T> velocity = (carried + forced) * per_mass;
+      record_at(out + node) = velocity;
+      record_at(out + node + record) = velocity - carried * (step.keep * per_mass);
+      out[node + record] = forced[0];
     }
-    out[node * node_values] = mass;
+    out[node] = mass;
   }
 }
 
