@@ -313,15 +313,18 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       relax(step.keep, increment.value[c], v[c], tile.count);
       tile.write(particles.advection[c], motion.value[c]);
     }
-    for (int q = 0; q < tile.count; ++q) {
-      momentum[q].value[0] = mass[q];
-      momentum[q].value[3] = T(0);
-      for (int c = 0; c < Dim; ++c) momentum[q].value[1 + c] = mass[q] * v[c][q];
+    // Four particles at a time; those past the tile's end are rubbish that nothing reads.
+    for (int q = 0; q < tile.count; q += record) {
+      const Record<T> m = record_at(mass + q);
+      Record<T> value[4] = {m, m * record_at(v[0] + q), m * record_at(v[1] + q), Record<T>{}};
+      if constexpr (Dim == 3) value[3] = m * record_at(v[2] + q);
+      transpose<T>(value);
+      for (int n = 0; n < record; ++n) record_at(momentum[q + n].value) = value[n];
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)
         scatter<T, Dim, Linear, 0>(remapped + cell_base<T, Dim>(cell) * node_values, momentum, weights,
-                                       tile.cell_first(cell), tile.cell_count(cell));
+                                   tile.cell_first(cell), tile.cell_count(cell));
   }
 }
 
