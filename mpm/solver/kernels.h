@@ -13,10 +13,9 @@
 namespace flowrest::mpm {
 
 enum class Transfer { quadratic_apic, linear_flip };
-enum class Dilatation {
-  cell_average,
-  centroid
-};  ///< how the volumetric part of the strain is averaged (B-bar)
+/// How the volumetric part of the strain is averaged (B-bar): through the nodes with the functions' own
+/// weights, over a cell's particles, or taken at the cell's centre.
+enum class Dilatation { smooth, cell_average, centroid };
 enum class StressRate { hughes_winget, jaumann };
 enum class Law {
   elasto_viscoplastic,
@@ -42,7 +41,7 @@ struct StepParameters {
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;
   StressRate stress_rate = StressRate::hughes_winget;
-  Dilatation dilatation = Dilatation::cell_average;
+  Dilatation dilatation = Dilatation::smooth;
   bool explicit_fluid = false;
   AxisBounds bounds[3];
   /// Moves a place (m) out of walls of any shape if it lies in one of `near`; returns whether it did. Null
@@ -62,10 +61,10 @@ constexpr int workspace_arrays = 112;
 constexpr int tile_padding = 16;  ///< lanes of the last pack may write past a tile's end
 
 template <class T>
-using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&, T* arenas,
-                            const T* nodes, const Workspace<T>&);
+using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&,
+                            const Grid<T>&, const Workspace<T>&);
 template <class T>
-using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const T* arenas, T* nodes);
+using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const Grid<T>&);
 
 /// One instruction set's stages for one dimension and transfer.
 template <class T>
@@ -79,6 +78,10 @@ struct Kernels {
                                        ///< linear: velocities, and their momentum re-mapped into the arena
   NodeStage<T> remap_nodes = nullptr;  ///< linear only (MUSL)
   BlockStage<T> remapped_to_particles = nullptr;  ///< linear only (MUSL): strain, stress, positions
+  // Quadratic only, for the smooth B-bar:
+  NodeStage<T> average_dilatation = nullptr;  ///< of what grid_to_particles left in the arenas
+  BlockStage<T> update_volumes = nullptr;     ///< volumes and pressures, and both into the arena
+  NodeStage<T> average_pressure = nullptr;
   ContactKernels<T> contact{};                    ///< with walls of any shape
 };
 

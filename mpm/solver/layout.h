@@ -22,6 +22,26 @@ constexpr int nodes_per_arena = power(arena_edge, Dim);
 constexpr int record = 4;
 constexpr int node_values = 2 * record;
 
+/// What is averaged through the nodes, a value a node each; dilatation is that of the last step.
+enum class Average { volume, pressure, dilatation };
+constexpr int average_count = 3;
+
+/// The grid's memory. Arenas belong to the occupied blocks, nodes and averages to all that exist; averages
+/// are null where nothing is averaged through the nodes.
+template <class T>
+struct Grid {
+  T* arenas = nullptr;
+  T* nodes = nullptr;
+  T* averages = nullptr;
+};
+
+/// One average of a block of nodes.
+template <int Dim, class T>
+T* averages_of(T* averages, std::uint32_t slot, Average which) {
+  return averages + (static_cast<std::size_t>(slot) * average_count + static_cast<std::size_t>(which)) *
+                        cells_per_block<Dim>;
+}
+
 /// A plane wall on a face of the background grid.
 enum class PlaneWall : std::uint8_t { none, slip, no_slip };
 

@@ -44,6 +44,7 @@ class SolverOf final : public Solver {
       if (v.lambda) v.lambda[at] = static_cast<T>(seeds[p].flocculation);
     }
     prepare();
+    update_volumes();
   }
 
   SolverOf(const SolverSettings& settings, const SolverState& state)
@@ -57,6 +58,7 @@ class SolverOf final : public Solver {
     tile_capacity_ = state.tile_capacity;
     if (contact_) contact_->set_forces(state.wall_forces);
     prepare();
+    update_volumes();
   }
 
   StepResult step(double step, const std::array<double, 3>& acceleration) override {
@@ -70,6 +72,7 @@ class SolverOf final : public Solver {
     result.wall_work = wall_work_;
     time_ += step;
     relocate();
+    update_volumes();
     return result;
   }
 
@@ -112,7 +115,8 @@ class SolverOf final : public Solver {
     return cells;
   }
   std::size_t bytes() const override {
-    return particles_.bytes() + blocks_.bytes() + (arenas_.size() + nodes_.size()) * sizeof(T);
+    return particles_.bytes() + blocks_.bytes() +
+           (arenas_.size() + nodes_.size() + averages_.size()) * sizeof(T);
   }
   int threads() const override { return threads_; }
   const std::string& instruction_set() const override { return instruction_set_; }
@@ -210,6 +214,16 @@ class SolverOf final : public Solver {
     const auto with_spare = [](std::size_t count) { return count + count / 8; };
     if (arenas_.size() < occupied * arena_size) arenas_ = AlignedArray<T>(with_spare(occupied) * arena_size);
     if (nodes_.size() < slots * nodes_size) nodes_ = AlignedArray<T>(with_spare(slots) * nodes_size);
+    if (smooth()) {
+      // Blocks keep their slots, and the last step's dilatation is still to be taken up.
+      const std::size_t size =
+          static_cast<std::size_t>(power(block_edge, settings_.dimension) * average_count);
+      if (averages_.size() < slots * size) {
+        AlignedArray<T> more(with_spare(slots) * size);
+        std::copy_n(averages_.data(), averages_.size(), more.data());
+        averages_ = std::move(more);
+      }
+    }
     while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell())
       tile_capacity_ += 32;
     if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {
@@ -238,8 +252,7 @@ class SolverOf final : public Solver {
     const auto blocks = static_cast<std::int64_t>(views_.size());
     const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
     const ParticleView<T>& view = particles_.view();
-    T* const arenas = arenas_.data();
-    T* const nodes = nodes_.data();
+    const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
     double marks[6] = {};
 #pragma omp parallel num_threads(threads_)
     {
@@ -247,12 +260,12 @@ class SolverOf final : public Solver {
       const auto over_blocks = [&](BlockStage<T> stage) {
 #pragma omp for schedule(dynamic, 1)
         for (std::int64_t b = 0; b < blocks; ++b)
-          stage(parameters_, view, views_[static_cast<std::size_t>(b)], arenas, nodes, workspace);
+          stage(parameters_, view, views_[static_cast<std::size_t>(b)], grid, workspace);
       };
       const auto over_nodes = [&](NodeStage<T> stage) {
 #pragma omp for schedule(static)
         for (std::int64_t b = 0; b < node_blocks; ++b)
-          stage(parameters_, node_views_[static_cast<std::size_t>(b)], arenas, nodes);
+          stage(parameters_, node_views_[static_cast<std::size_t>(b)], grid);
       };
       const auto mark = [&](int i) {
 #pragma omp master
@@ -266,24 +279,25 @@ class SolverOf final : public Solver {
       for (std::int64_t b = 0; b < blocks; ++b) {
         const BlockView& block = views_[static_cast<std::size_t>(b)];
         particles_.settle(blocks_.reordering(block.slot), taken);
-        kernels_.particles_to_grid(parameters_, view, block, arenas, nodes, workspace);
+        kernels_.particles_to_grid(parameters_, view, block, grid, workspace);
       }
       mark(1);
       over_nodes(kernels_.update_nodes);
       if (contact_) {
 #pragma omp single
-        wall_work_ = contact_->apply(nodes, static_cast<double>(parameters_.step), drive_);
+        wall_work_ = contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
       }
       mark(2);
 #pragma omp for schedule(static)
       for (std::int64_t b = 0; b < blocks; ++b) *views_[static_cast<std::size_t>(b)].sums = {};
       over_blocks(kernels_.grid_to_particles);
       mark(3);
+      if (smooth()) over_nodes(kernels_.average_dilatation);
       if (kernels_.remapped_to_particles) {
         over_nodes(kernels_.remap_nodes);
         if (contact_) {
 #pragma omp single
-          contact_->apply_to_remapped(nodes, drive_);
+          contact_->apply_to_remapped(grid.nodes, drive_);
         }
         mark(4);
         over_blocks(kernels_.remapped_to_particles);
@@ -296,6 +310,34 @@ class SolverOf final : public Solver {
     times_.nodes += marks[2] - marks[1];
     times_.grid_to_particles += marks[3] - marks[2] + marks[5] - marks[4];
     if (kernels_.remapped_to_particles) times_.nodes += marks[4] - marks[3];
+  }
+
+  bool smooth() const { return parameters_.dilatation == Dilatation::smooth; }
+
+  /// Volumes and pressures by the dilatation that the nodes have averaged, with every particle in its new
+  /// cell, and the pressure that acts in the next step. With a step of no length, that pressure alone.
+  void update_volumes() {
+    if (!smooth()) return;
+    const double begin = omp_get_wtime();
+    if (stale_) prepare();
+    const auto blocks = static_cast<std::int64_t>(views_.size());
+    const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
+    const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
+#pragma omp parallel num_threads(threads_)
+    {
+      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
+      std::vector<T> taken;
+#pragma omp for schedule(dynamic, 1)
+      for (std::int64_t b = 0; b < blocks; ++b) {
+        const BlockView& block = views_[static_cast<std::size_t>(b)];
+        particles_.settle(blocks_.reordering(block.slot), taken);
+        kernels_.update_volumes(parameters_, particles_.view(), block, grid, workspace);
+      }
+#pragma omp for schedule(static)
+      for (std::int64_t b = 0; b < node_blocks; ++b)
+        kernels_.average_pressure(parameters_, node_views_[static_cast<std::size_t>(b)], grid);
+    }
+    times_.volumes += omp_get_wtime() - begin;
   }
 
   StepResult collect(double step) {
@@ -396,7 +438,7 @@ class SolverOf final : public Solver {
   double wall_work_ = 0.0;                     ///< J in this step
   int threads_ = 1;
   int tile_capacity_ = usual_tile_capacity;
-  AlignedArray<T> arenas_, nodes_;
+  AlignedArray<T> arenas_, nodes_, averages_;
   std::vector<AlignedArray<T>> workspace_memory_;
   std::vector<Workspace<T>> workspaces_;
   std::vector<BlockView> views_;

@@ -18,7 +18,7 @@ struct SolverSettings {
   int dimension = 2;
   bool axisymmetric = false;
   Transfer transfer = Transfer::quadratic_apic;
-  Dilatation dilatation = Dilatation::cell_average;
+  Dilatation dilatation = Dilatation::smooth;
   StressRate stress_rate = StressRate::hughes_winget;
   Law law = Law::elasto_viscoplastic;
   bool explicit_fluid = false;
@@ -72,6 +72,7 @@ struct ParticleBatch {
 /// CPU per stage of the steps so far.
 struct StageTimes {
   double particles_to_grid = 0.0, nodes = 0.0, grid_to_particles = 0.0, sorting = 0.0;  ///< s of wall time
+  double volumes = 0.0;  ///< s of wall time, smooth B-bar only
 };
 
 /// Everything a solver holds, for checkpoints: particles in sorted order.

@@ -81,10 +81,31 @@ void heed_filling(const StepParameters<T>& step, const Strain<T, Dim>& s, const 
   }
 }
 
-/// Strain and averaged dilatation of a tile from its velocity gradients.
+/// Gives a tile's rate of dilatation to the nodes, which average it, and leaves none for now: update_volumes
+/// takes it up.
+template <class T, int Dim>
+void give_dilatation(Tile<T, Dim>& tile, const T* const* x, const T* volume, T* dilatation, T* plane) {
+  T* growth = tile.fresh();
+#pragma omp simd
+  for (int q = 0; q < tile.count; ++q) {
+    growth[q] = volume[q] * dilatation[q];
+    dilatation[q] = T(0);
+  }
+  Weights<T, Dim, Quadratic> weights;
+  weights.make(tile, x);
+  const T* rows = weighted_rows<T, Dim, 1>(tile, weights, {growth});
+  for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
+    if (tile.cell_count(cell) > 0)
+      scatter_scalars<T, Dim, 1>(plane, cell_base<T, Dim>(cell), rows, weights, tile.cell_first(cell),
+                                 tile.cell_count(cell));
+}
+
+/// Strain and averaged dilatation of a tile from its velocity gradients. `planes` of the block's arena, where
+/// not null, take the dilatation (smooth B-bar).
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
-                 const Gathered<T, Dim>& gathered, const T* mass, const T* filling, Strain<T, Dim>& s) {
+                 const Gathered<T, Dim>& gathered, const T* mass, const T* filling, T* planes,
+                 Strain<T, Dim>& s) {
   const int count = tile.count;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) s.gradient[i][j] = gathered.gradient[i][j];
@@ -112,7 +133,11 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
   if (filling) heed_filling<T, Dim>(step, s, filling, count);
-  average_over_cells(tile, volume, s.dilatation);
+  if (planes) {
+    give_dilatation<T, Dim>(tile, x, volume, s.dilatation, planes);
+  } else {
+    average_over_cells(tile, volume, s.dilatation);
+  }
 }
 
 /// Volume, stress and flocculation of a tile after the step, and the sums that go with them.
@@ -202,12 +227,12 @@ void move_particles(const StepParameters<T>& step, Tile<T, Dim>& tile, T* const*
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
                      const T* arena, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection,
-                     const T* filling) {
+                     const T* filling, T* planes) {
   Strain<T, Dim> s;
   const T* mass = tile.open(particles.mass);
   s.ratio = tile.open(particles.volume_ratio);
   s.rate = tile.open(particles.rate);
-  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, filling, s);
+  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, filling, planes, s);
   update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
   move_particles<T, Dim, Shape>(step, tile, x, advection, mass);
 }
@@ -228,7 +253,7 @@ void relax(T keep, const T* increment, T* own, int count) {
 /// published (Jiang et al. 2015). Then one field gives the motion and what particles carry on.
 template <class T, int Dim, bool Axisymmetric, Own Kept>
 void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
-                const T* arena, const Workspace<T>& workspace) {
+                const T* arena, T* planes, const Workspace<T>& workspace) {
   constexpr bool kept = Kept == Own::kept;
   constexpr Wanted motion_wanted{true, true, !kept}, increment_wanted{true, false, true};
   const T per_cell = T(1) / step.cell;
@@ -266,29 +291,35 @@ void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles,
       for (int a = 0; a < Dim; ++a) carry_on(particles.affine[c * Dim + a], increment.affine[c][a]);
     }
     deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value,
-                                                     filling);
+                                                     filling, planes);
   }
 }
 
 template <class T, int Dim, bool Axisymmetric>
 void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
-                       const BlockView& block, T* /*arenas*/, const T* nodes, const Workspace<T>& workspace) {
+                       const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
-  load_arena<T, Dim, Quadratic>(step, block, nodes, arena);
-  if (step.keep > T(0)) {
-    apic_tiles<T, Dim, Axisymmetric, Own::kept>(step, particles, block, arena, workspace);
-  } else {
-    apic_tiles<T, Dim, Axisymmetric, Own::forgotten>(step, particles, block, arena, workspace);
+  load_arena<T, Dim, Quadratic>(step, block, grid.nodes, arena);
+  T* planes = nullptr;
+  if (step.dilatation == Dilatation::smooth) {
+    planes = grid.arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
+    for (int n = 0; n < plane_values<Dim>; ++n) planes[n] = T(0);
   }
+  if (step.keep > T(0)) {
+    apic_tiles<T, Dim, Axisymmetric, Own::kept>(step, particles, block, arena, planes, workspace);
+  } else {
+    apic_tiles<T, Dim, Axisymmetric, Own::forgotten>(step, particles, block, arena, planes, workspace);
+  }
+  if (planes) fold_scalars<T, Dim>(planes, block, step.bounds);
 }
 
 /// FLIP's velocities, then their momentum mapped back for the strain (MUSL).
 template <class T, int Dim>
 void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
-                       const BlockView& block, T* arenas, const T* nodes, const Workspace<T>& workspace) {
+                       const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
-  load_arena<T, Dim, Linear>(step, block, nodes, arena);
-  T* remapped = arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
+  load_arena<T, Dim, Linear>(step, block, grid.nodes, arena);
+  T* remapped = grid.arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
   for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
   using Momentum = Source<T, Dim, 0, record>;
   Tile<T, Dim> tile(block, workspace);
@@ -330,10 +361,9 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
 
 template <class T, int Dim, bool Axisymmetric>
 void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>& particles,
-                           const BlockView& block, T* /*arenas*/, const T* nodes,
-                           const Workspace<T>& workspace) {
+                           const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
-  load_arena<T, Dim, Linear>(step, block, nodes, arena);
+  load_arena<T, Dim, Linear>(step, block, grid.nodes, arena);
   constexpr Wanted wanted{Axisymmetric, true, false};
   const T per_cell = T(1) / step.cell;
   Tile<T, Dim> tile(block, workspace);
@@ -349,7 +379,8 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
       const CellField<T, Dim, Linear, node_values> field(arena + cell_base<T, Dim>(cell) * node_values);
       gather<T, Dim, Linear, node_values, wanted>(field, 1, x, per_cell, first, n, g, filling);
     }
-    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection, filling);
+    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection, filling,
+                                                  nullptr);
   }
 }
 

@@ -17,6 +17,9 @@ Kernels<T> make_kernels(Transfer transfer) {
             apic_to_particles<T, Dim, Axisymmetric>,
             nullptr,
             nullptr,
+            average_dilatation<T, Dim>,
+            update_volumes<T, Dim>,
+            average_pressure<T, Dim>,
             contact_kernels<T>()};
   return {Dim,
           particles_to_grid<T, Dim, Axisymmetric, Linear>,
@@ -24,6 +27,9 @@ Kernels<T> make_kernels(Transfer transfer) {
           flip_to_particles<T, Dim>,
           update_nodes<T, Dim, true>,
           remapped_to_particles<T, Dim, Axisymmetric>,
+          nullptr,
+          nullptr,
+          nullptr,
           contact_kernels<T>()};
 }
 

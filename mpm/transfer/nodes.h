@@ -9,7 +9,7 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// after it: (mass, new velocity), (filling, new velocity - keep * old velocity). With Remap the second
 /// stays as it was.
 template <class T, int Dim, bool Remap>
-void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* arenas, T* nodes) {
+void update_nodes(const StepParameters<T>& step, const NodeView& view, const Grid<T>& grid) {
   constexpr int values = cells_per_block<Dim> * node_values, beyond = arena_edge - block_edge;
   alignas(64) T sums[values];
   for (int n = 0; n < values; ++n) sums[n] = T(0);
@@ -19,7 +19,7 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
     // Of its own block an arena has every node, of a block beyond it the first few layers.
     const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
     const int rows = Dim == 3 ? (dj == 0 ? block_edge : beyond) : 1;
-    const T* from = arenas + static_cast<std::size_t>(arena) * nodes_per_arena<Dim> * node_values;
+    const T* from = grid.arenas + static_cast<std::size_t>(arena) * nodes_per_arena<Dim> * node_values;
     for (int i = 0; i < (di == 0 ? block_edge : beyond); ++i)
       for (int j = 0; j < rows; ++j) {
         const T* row =
@@ -32,7 +32,7 @@ void update_nodes(const StepParameters<T>& step, const NodeView& view, const T* 
         }
       }
   }
-  T* out = nodes + static_cast<std::size_t>(view.slot) * values;
+  T* out = grid.nodes + static_cast<std::size_t>(view.slot) * values;
   for (int node = 0; node < values; node += node_values) {
     const Record<T> carried = record_at(sums + node), forced = record_at(sums + node + record);
     const T mass = carried[0];

@@ -2,6 +2,7 @@
 
 #include "mpm/boundary/plane_walls.h"
 #include "mpm/material/deviator.h"
+#include "mpm/transfer/averages.h"
 #include "mpm/transfer/shape.h"
 #include "mpm/transfer/tile.h"
 
@@ -161,13 +162,17 @@ FLOWREST_INLINE void set_rows(Record<T> (&rows)[4], const Record<T>& a, const Re
 /// arena: per node (mass, momentum) and (filling, impulse).
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& particles,
-                       const BlockView& block, T* arenas, const T* /*nodes*/, const Workspace<T>& workspace) {
+                       const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
   constexpr int arena_values = nodes_per_arena<Dim> * node_values;
   constexpr int sides = term_sides<Shape>;
   using Sources = Source<T, Dim, sides, node_values>;
-  T* arena = arenas + static_cast<std::size_t>(block.arena) * arena_values;
+  T* arena = grid.arenas + static_cast<std::size_t>(block.arena) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
+
+  const bool smooth = Shape::nodes == 3 && step.dilatation == Dilatation::smooth;
+  alignas(64) T averaged[plane_values<Dim>];
+  if (smooth) load_average<T, Dim>(step, block, grid.averages, Average::pressure, averaged);
 
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
@@ -189,7 +194,11 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       pressure[q] = raw_pressure[q];
     }
     const bool centroid = step.dilatation == Dilatation::centroid;
-    if (!centroid) average_over_cells(tile, volume, pressure);
+    if (smooth) {
+      gather_average<T, Dim>(tile, averaged, x, pressure);
+    } else if (!centroid) {
+      average_over_cells(tile, volume, pressure);
+    }
 
     T* per_radius = nullptr;
     T* radial = nullptr;
