@@ -325,6 +325,18 @@ void check_viscous_step(const Case& c) {
   }
 }
 
+void check_b_bar(const Case& c) {
+  const Mpm& mpm = c.scene().mpm;
+  if (!c.usable({"mpm.scheme", "mpm.b_bar"}) || !mpm.b_bar || mpm.scheme == Scheme::quadratic_apic) return;
+  const bool paper = mpm.scheme == Scheme::paper;
+  if (!paper && *mpm.b_bar == BBar::cell_average) return;
+  c.fault("mpm.b_bar",
+          fmt::format("mpm.b_bar is {}, with the scheme {}; allowed: {}, or the scheme "
+                      "quadratic-apic",
+                      to_string(*mpm.b_bar), to_string(mpm.scheme),
+                      paper ? "none, for it takes the strain at the cell's centre" : "cell-average"));
+}
+
 void check_size(const Case& c) {
   const MpmEstimate estimate = estimate_mpm(c.scene());
   if (!(estimate.particles <= most_particles)) {
@@ -381,6 +393,7 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
   check_models(c);
   check_foam_runs(c);
   check_thixotropy(c);
+  check_b_bar(c);
   check_outputs(c);
   if (!step_is_known(c)) return;
   if (draft.scene.kind != Kind::duct) check_weight(c);

@@ -59,6 +59,22 @@ std::string read_choice(const Value& value, Choice& choice) {
   return {};
 }
 
+/// One of a choice's names, or none.
+template <class Choice>
+Key choice(std::string path, Access<std::optional<Choice>> at, std::string meaning) {
+  Key key = plain_key(std::move(path), "", std::move(meaning), "one of " + joined(all_names<Choice>()));
+  key.read = [=](const Value& value, Draft& draft) {
+    Choice given{};
+    std::string wrong = read_choice(value, given);
+    if (wrong.empty()) at(draft) = given;
+    return Complaint{wrong, value.where};
+  };
+  key.write = [=](Draft& draft) {
+    return at(draft) ? nlohmann::ordered_json(to_string(*at(draft))) : nlohmann::ordered_json();
+  };
+  return key;
+}
+
 /// One of a choice's names.
 template <class Choice>
 Key choice(std::string path, Access<Choice> at, std::string meaning) {

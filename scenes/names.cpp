@@ -55,6 +55,11 @@ const NameTable<FluidUpdate>& names_of(FluidUpdate) {
   return table;
 }
 
+const NameTable<BBar>& names_of(BBar) {
+  static const NameTable<BBar> table = {{BBar::smooth, "smooth"}, {BBar::cell_average, "cell-average"}};
+  return table;
+}
+
 const NameTable<Wall>& names_of(Wall) {
   static const NameTable<Wall> table = {{Wall::no_slip, "no-slip"}, {Wall::slip, "slip"}};
   return table;
@@ -105,6 +110,7 @@ std::string to_string(Scheme choice) { return name_of(choice); }
 std::string to_string(Precision choice) { return name_of(choice); }
 std::string to_string(Seeding choice) { return name_of(choice); }
 std::string to_string(FluidUpdate choice) { return name_of(choice); }
+std::string to_string(BBar choice) { return name_of(choice); }
 std::string to_string(Wall choice) { return name_of(choice); }
 std::string to_string(FoamLaws choice) { return name_of(choice); }
 std::string to_string(FoamMixing choice) { return name_of(choice); }

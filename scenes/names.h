@@ -19,6 +19,7 @@ const NameTable<Scheme>& names_of(Scheme);
 const NameTable<Precision>& names_of(Precision);
 const NameTable<Seeding>& names_of(Seeding);
 const NameTable<FluidUpdate>& names_of(FluidUpdate);
+const NameTable<BBar>& names_of(BBar);
 const NameTable<Wall>& names_of(Wall);
 const NameTable<FoamLaws>& names_of(FoamLaws);
 const NameTable<FoamMixing>& names_of(FoamMixing);

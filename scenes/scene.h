@@ -22,6 +22,8 @@ enum class Precision { double_precision, single_precision };
 enum class Seeding { lattice, jittered, gmsh };
 /// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
 enum class FluidUpdate { implicit_update, explicit_update };
+/// How the volumetric part of the strain, and the pressure, are averaged.
+enum class BBar { smooth, cell_average };
 /// How a wall holds the material; only `no_slip` and `slip` are names, friction is given by its coefficient.
 enum class Wall { no_slip, slip, friction };
 /// Whose laws an OpenFOAM run takes: flowrest's rheology plug-in, OpenFOAM's own, or the former where it is
@@ -42,6 +44,7 @@ std::string to_string(Scheme);
 std::string to_string(Precision);
 std::string to_string(Seeding);
 std::string to_string(FluidUpdate);
+std::string to_string(BBar);
 std::string to_string(Wall);
 std::string to_string(FoamLaws);
 std::string to_string(FoamMixing);
@@ -184,7 +187,8 @@ struct Mpm {
   Seeding seeding = Seeding::lattice;
   std::uint64_t seed = 1;  ///< of the jitter
   FluidUpdate fluid_update = FluidUpdate::implicit_update;
-  double flip_relaxation_time = 0.05;          ///< s, of `linear-flip`
+  std::optional<BBar> b_bar;           ///< smooth for `quadratic-apic`, cell_average for `linear-flip`
+  double flip_relaxation_time = 0.05;  ///< s, of `linear-flip`
   std::optional<double> apic_relaxation_time;  ///< s, of `quadratic-apic`: its transfer acts once over this
   /// Share of an overlap of particles taken back per unit strain; 1 for `quadratic-apic`, 0.3 for
   /// `linear-flip`, whose filling is noisier, 0 for `paper` and in ducts.

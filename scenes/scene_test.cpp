@@ -152,7 +152,7 @@ TEST(Scene, ResolvedSettingsReadBackAsTheSameScene) {
   const std::vector<std::vector<std::string>> variants = {
       {},
       {"geometry.dimension=quarter", "mpm.scheme=linear-flip", "mpm.precision=float",
-       "mpm.seed=9223372036854775807"},
+       "mpm.seed=9223372036854775807", "mpm.b_bar=cell-average"},
       {"mpm.scheme=paper", "walls.base=slip", "material.critical_shear_rate=0.123456789012345678"},
       {"material.bulk_modulus=123456.789", "material.poisson_ratio=0.499", "runs.mpm=[]", "runs.exact=false"},
       {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",

@@ -238,6 +238,11 @@ std::vector<Key> mpm_keys() {
               "seed of the jitter"),
       choice("mpm.fluid_update", AT(draft.scene.mpm.fluid_update),
              "how a fluid's stress is integrated: implicit has no viscous step limit"),
+      choice(
+          "mpm.b_bar", AT(draft.scene.mpm.b_bar),
+          "how volumetric strain and pressure are averaged: through the nodes by the functions' own weights, "
+          "or over a cell's particles")
+          .otherwise("smooth; linear-flip cell-average; neither with paper"),
       number("mpm.flip_relaxation_time", "s", above(0.0, largest_time),
              AT(draft.scene.mpm.flip_relaxation_time),
              "time over which linear-flip forgets a particle's own velocity"),

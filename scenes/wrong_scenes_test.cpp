@@ -346,6 +346,18 @@ const Wrong wrong_scenes[] = {
     {"UnknownFluidUpdate", slump_text, "cfl = 0.75", "fluid_update = \"implict\"",
      "wrong.toml:36:16: mpm.fluid_update is \"implict\", nearest is \"implicit\"; allowed: implicit, "
      "explicit"},
+    {"UnknownBBar", slump_text, "cfl = 0.75", "b_bar = \"smoth\"",
+     "wrong.toml:36:9: mpm.b_bar is \"smoth\", nearest is \"smooth\"; allowed: smooth, cell-average"},
+    {"SmoothBBarOfLinearFunctions", slump_text, "scheme = \"quadratic-apic\"",
+     "b_bar = \"smooth\"\nscheme = \"linear-flip\"",
+     "wrong.toml:33:9: mpm.b_bar is smooth, with the scheme linear-flip; allowed: cell-average, or the "
+     "scheme "
+     "quadratic-apic"},
+    {"BBarOfThePaper", slump_text, "scheme = \"quadratic-apic\"",
+     "b_bar = \"cell-average\"\nscheme = \"paper\"",
+     "wrong.toml:33:9: mpm.b_bar is cell-average, with the scheme paper; allowed: none, for it takes the "
+     "strain "
+     "at the cell's centre, or the scheme quadratic-apic"},
     {"ExtendsAnUnknownScene", slump_text, "kind = \"slump\"", "kind = \"slump\"\nextends = \"no-such-scene\"",
      "wrong.toml:3:11: unknown scene \"no-such-scene\"; allowed: a path to a .toml file, or "},
     {"BodyForceNestedTooDeeply", duct_text, "[[0.0, 2000.0], [12.0, 360.0]]", "[[0.0, [1.0]]]",

@@ -96,6 +96,8 @@ void print_feature_costs() {
     return compare(FlowingSlump(base), FlowingSlump(with(base, more)));
   };
   std::printf("what a feature costs (without it, CPU time per particle-step; factor with it)\n");
+  print("smooth B-bar for the cell average",
+        compare(FlowingSlump(with(base, {"mpm.b_bar=cell-average"})), FlowingSlump(base)));
   print("density correction",
         compare(FlowingSlump(with(base, {"mpm.density_correction=0"})), FlowingSlump(base)));
   print("thixotropy", added({"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15",

@@ -50,6 +50,7 @@ void steps(benchmark::State& state, const Case& c, const Limits& limits) {
   state.counters["nodes_ns"] = stage_ns(&StageTimes::nodes);
   state.counters["g2p_ns"] = stage_ns(&StageTimes::grid_to_particles);
   state.counters["sort_ns"] = stage_ns(&StageTimes::sorting);
+  state.counters["volumes_ns"] = stage_ns(&StageTimes::volumes);
 }
 
 /// The return of a law alone, on states around yield that fit in the first-level cache.

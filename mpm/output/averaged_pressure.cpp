@@ -25,6 +25,7 @@ AveragedPressure::Corner AveragedPressure::corner_of(const Corner& cell, int cor
 }
 
 void AveragedPressure::add(const ParticleBatch& batch) {
+  if (!batch.acting_pressure.empty()) return;
   // Particles come cell by cell: each cell's sum goes to its corners once.
   for (std::size_t i = 0; i < batch.count;) {
     const Corner cell = cell_of(batch, i);
@@ -42,6 +43,7 @@ void AveragedPressure::add(const ParticleBatch& batch) {
 }
 
 std::vector<double> AveragedPressure::at(const ParticleBatch& batch) const {
+  if (!batch.acting_pressure.empty()) return batch.acting_pressure;
   std::vector<double> pressure(batch.count);
   Corner cell{};
   std::array<double, 8> corners{};

@@ -9,10 +9,11 @@
 
 namespace flowrest::mpm {
 
-/// The pressure without the part that no motion feels. Pressures act as averages over cells, and averages
-/// that alternate from cell to cell push nodes hardly at all, so they come and go; within a cell, particles
-/// differ at will. Averaged to the corners of cells (by volume) and interpolated from there, both are gone,
-/// and a field linear in space stays as it is, save in the outermost half cell.
+/// The pressure without the part that no motion feels. Averaged through the nodes (the smooth B-bar) it acts
+/// smoothly, and that is it. Where pressures act as averages over cells, averages that alternate from cell to
+/// cell push nodes hardly at all, so they come and go; within a cell, particles differ at will. Averaged to
+/// the corners of cells (by volume) and interpolated from there, both are gone, and a field linear in space
+/// stays as it is, save in the outermost half cell.
 class AveragedPressure {
  public:
   AveragedPressure(int dimension, double cell) : dimension_(dimension), cell_(cell) {}

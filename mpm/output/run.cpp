@@ -304,7 +304,8 @@ class MpmRun {
     info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid},
                             {"nodes", t.nodes},
                             {"grid_to_particles", t.grid_to_particles},
-                            {"sorting", t.sorting}};
+                            {"sorting", t.sorting},
+                            {"volumes", t.volumes}};
     info["growth_to_come"] = can_rest() ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
     info["rest_time_s"] =
         has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
@@ -380,13 +381,13 @@ class MpmRun {
         info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
     if (options_.quiet) return;
     const StageTimes& t = solver_->stage_times();
-    const double listed = t.particles_to_grid + t.nodes + t.grid_to_particles + t.sorting;
+    const double listed = t.particles_to_grid + t.nodes + t.grid_to_particles + t.sorting + t.volumes;
     fmt::print(stderr, "  wall time per stage ({} threads, {}, {:.2f} CPU s):\n", solver_->threads(),
                solver_->instruction_set(), cpu);
     for (const auto& [name, seconds] :
          {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
           std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
-          std::pair{"gauges and output", std::max(0.0, wall - listed)}})
+          std::pair{"volumes", t.volumes}, std::pair{"gauges and output", std::max(0.0, wall - listed)}})
       fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
   }
 

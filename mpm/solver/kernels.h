@@ -65,6 +65,10 @@ using BlockStage = void (*)(const StepParameters<T>&, const ParticleView<T>&, co
                             const Grid<T>&, const Workspace<T>&);
 template <class T>
 using NodeStage = void (*)(const StepParameters<T>&, const NodeView&, const Grid<T>&);
+/// Reads an average of a block's particles off the grid, into an array with a place for each.
+template <class T>
+using AverageReader = void (*)(const StepParameters<T>&, const ParticleView<T>&, const BlockView&,
+                               const Grid<T>&, const Workspace<T>&, T* out);
 
 /// One instruction set's stages for one dimension and transfer.
 template <class T>
@@ -82,7 +86,8 @@ struct Kernels {
   NodeStage<T> average_dilatation = nullptr;  ///< of what grid_to_particles left in the arenas
   BlockStage<T> update_volumes = nullptr;     ///< volumes and pressures, and both into the arena
   NodeStage<T> average_pressure = nullptr;
-  ContactKernels<T> contact{};                    ///< with walls of any shape
+  AverageReader<T> acting_pressure = nullptr;  ///< for those who look at particles between steps
+  ContactKernels<T> contact{};                 ///< with walls of any shape
 };
 
 /// The instruction sets this build has and this machine can run, best first: "avx512", "avx2", "x86-64" or

@@ -71,9 +71,9 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
   s.transfer =
       scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
-  s.dilatation = paper                                    ? Dilatation::centroid
-                 : s.transfer == Transfer::quadratic_apic ? Dilatation::smooth
-                                                          : Dilatation::cell_average;
+  if (paper) s.dilatation = Dilatation::centroid;
+  if (scene.mpm.b_bar)
+    s.dilatation = *scene.mpm.b_bar == scenes::BBar::smooth ? Dilatation::smooth : Dilatation::cell_average;
   s.stress_rate = paper ? StressRate::jaumann : StressRate::hughes_winget;
   s.law = law_of(m.model, scene.thixotropy.has_value());
   s.explicit_fluid = m.model != scenes::Model::elasto_viscoplastic &&

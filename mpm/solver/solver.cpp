@@ -146,10 +146,10 @@ class SolverOf final : public Solver {
                static_cast<T>(settings.state.exponent)};
     p.law = settings.law;
     p.stress_rate = settings.stress_rate;
-    p.dilatation = settings.dilatation;
+    p.dilatation = settings.b_bar();
     p.explicit_fluid = settings.explicit_fluid;
     p.density_correction = static_cast<T>(settings.density_correction);
-    p.filling_matters = settings.free_surface && settings.dilatation != Dilatation::centroid;
+    p.filling_matters = settings.free_surface && p.dilatation != Dilatation::centroid;
     for (std::size_t a = 0; a < 3; ++a) p.bounds[a] = settings.bounds[a];
     // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep
     // every real contribution and large enough that its inverse stays finite.
@@ -380,7 +380,7 @@ class SolverOf final : public Solver {
     for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), taken_);
   }
 
-  void fill(ParticleBatch& batch, const BlockView& block) const {
+  void fill(ParticleBatch& batch, const BlockView& block) {
     const ParticleView<T>& v = particles_.view();
     const int dim = settings_.dimension, cells = power(block_edge, dim);
     const std::size_t count = block.start[cells];
@@ -391,6 +391,12 @@ class SolverOf final : public Solver {
                     &batch.elastic_energy})
       a->resize(count);
     batch.flocculation.resize(v.lambda ? count : 0);
+    if (smooth()) {
+      std::vector<T> pressure(count);
+      kernels_.acting_pressure(parameters_, v, block, {nullptr, nullptr, averages_.data()},
+                               workspaces_.front(), pressure.data());
+      batch.acting_pressure.assign(pressure.begin(), pressure.end());
+    }
     for (int cell = 0; cell < cells; ++cell) {
       const int in_block[3] = {dim == 3 ? cell / 16 : cell / 4, dim == 3 ? cell / 4 % 4 : cell % 4, cell % 4};
       for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) {

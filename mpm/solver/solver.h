@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct SolverSettings {
   int dimension = 2;
   bool axisymmetric = false;
   Transfer transfer = Transfer::quadratic_apic;
-  Dilatation dilatation = Dilatation::smooth;
+  std::optional<Dilatation> dilatation;  ///< default: smooth if quadratic, the cell average if linear
   StressRate stress_rate = StressRate::hughes_winget;
   Law law = Law::elasto_viscoplastic;
   bool explicit_fluid = false;
@@ -34,6 +35,11 @@ struct SolverSettings {
   std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
   int threads = 0;              ///< 0: as many as the particles can feed, up to all cores
   std::string instruction_set;  ///< empty: the best this machine runs
+
+  Dilatation b_bar() const {
+    return dilatation.value_or(transfer == Transfer::quadratic_apic ? Dilatation::smooth
+                                                                    : Dilatation::cell_average);
+  }
 };
 
 /// One particle to begin with.
@@ -65,8 +71,9 @@ struct ParticleBatch {
   std::vector<double> rate;                     ///< 1/s, plastic (EVP) or total (fluid) shear rate
   std::vector<double> shear_stress;             ///< Pa, the invariant
   std::vector<double> raw_pressure;             ///< Pa, of the particle's own volume
-  std::vector<double> flocculation;             ///< empty without thixotropy
-  std::vector<double> elastic_energy;           ///< J, of shape and volume
+  std::vector<double> acting_pressure;  ///< Pa, averaged through the nodes; empty unless that is the B-bar
+  std::vector<double> flocculation;     ///< empty without thixotropy
+  std::vector<double> elastic_energy;   ///< J, of shape and volume
 };
 
 /// CPU per stage of the steps so far.

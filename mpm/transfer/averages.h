@@ -273,4 +273,20 @@ void update_volumes(const StepParameters<T>& step, const ParticleView<T>& partic
   for (int s = 0; s < 2; ++s) fold_scalars<T, Dim>(planes + s * plane_values<Dim>, block, step.bounds);
 }
 
+/// The pressure that acts on a block's particles, Pa.
+template <class T, int Dim>
+void acting_pressure(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
+                     const Grid<T>& grid, const Workspace<T>& workspace, T* out) {
+  alignas(64) T averaged[plane_values<Dim>];
+  load_average<T, Dim>(step, block, grid.averages, Average::pressure, averaged);
+  Tile<T, Dim> tile(block, workspace);
+  while (tile.next()) {
+    const T* x[Dim];
+    for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
+    T* pressure = tile.fresh();
+    gather_average<T, Dim>(tile, averaged, x, pressure);
+    for (int q = 0; q < tile.count; ++q) out[tile.first + q] = pressure[q];
+  }
+}
+
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

@@ -20,6 +20,7 @@ Kernels<T> make_kernels(Transfer transfer) {
             average_dilatation<T, Dim>,
             update_volumes<T, Dim>,
             average_pressure<T, Dim>,
+            acting_pressure<T, Dim>,
             contact_kernels<T>()};
   return {Dim,
           particles_to_grid<T, Dim, Axisymmetric, Linear>,
@@ -27,6 +28,7 @@ Kernels<T> make_kernels(Transfer transfer) {
           flip_to_particles<T, Dim>,
           update_nodes<T, Dim, true>,
           remapped_to_particles<T, Dim, Axisymmetric>,
+          nullptr,
           nullptr,
           nullptr,
           nullptr,

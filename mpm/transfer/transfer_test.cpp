@@ -56,7 +56,7 @@ struct Stages {
     step.density = static_cast<T>(s.density);
     step.state = {static_cast<T>(s.state.bulk_modulus), static_cast<T>(s.state.shear_modulus),
                   static_cast<T>(s.state.exponent)};
-    step.dilatation = s.dilatation;
+    step.dilatation = s.b_bar();
     for (std::size_t a = 0; a < 3; ++a) step.bounds[a] = s.bounds[a];
   }
 

@@ -125,8 +125,8 @@ struct ColumnPressure {
   double mass = 0.0;    ///< kg
 };
 
-/// Row by row of cells the averaged pressure against the weight above the row and half its own. Quadratic
-/// functions carry the particles' pressure; of linear ones a cell carries the sum of volume times pressure
+/// Row by row of cells the averaged pressure against the weight above the row and half its own. With
+/// quadratic functions that acts on particles; of linear ones a cell carries the sum of volume times pressure
 /// over its own volume, which differ where a lattice row more or less than three happens to lie in the cell.
 inline ColumnPressure column_pressure(Solver& solver, const SolverSettings& s, int across) {
   struct Row {
@@ -138,7 +138,7 @@ inline ColumnPressure column_pressure(Solver& solver, const SolverSettings& s, i
       Row& row = rows[static_cast<int>(b.position[1][i] / s.cell)];
       row.mass += b.mass[i];
       row.volume += b.volume[i];
-      row.thrust += b.volume[i] * b.raw_pressure[i];
+      row.thrust += b.volume[i] * (b.acting_pressure.empty() ? b.raw_pressure : b.acting_pressure)[i];
     }
   });
   ColumnPressure result;
