@@ -7,6 +7,7 @@
 
 #include "mpm/benchmark/flowing_slump.h"
 #include "mpm/benchmark/machine_limits.h"
+#include "mpm/output/gauges.h"
 #include "mpm/output/run.h"
 
 namespace flowrest::mpm::bench {
@@ -47,6 +48,20 @@ Paired compare(FlowingSlump without, FlowingSlump with_it, double (*clock)() = c
 void print(const char* what, const Paired& p) {
   std::printf("  %-64s %7.1f ns  x %.2f\n", what, p.first_ns, p.ratio);
   std::fflush(stdout);
+}
+
+/// Measures as often as a run does, every 50 ms.
+Paired gauge_cost(FlowingSlump slump) {
+  const Gauges gauges(slump.scene());
+  std::vector<double> step, ratio;
+  for (int turn = 0; turn < turns; ++turn) {
+    step.push_back(time_of(slump, cpu_seconds));
+    const double begin = cpu_seconds();
+    gauges.measure(slump.solver());
+    const double once = (cpu_seconds() - begin) / slump.particles() * 1e9;
+    ratio.push_back(1.0 + once * slump.step() / 0.05 / step.back());
+  }
+  return {median(step), median(ratio)};
 }
 
 /// CPU seconds of a whole short run with its outputs.
@@ -103,6 +118,12 @@ void print_feature_costs() {
   print("thixotropy", added({"thixotropy.flocculation_rate=0.4", "thixotropy.deflocculation_coefficient=0.15",
                              "thixotropy.initial_flocculation=0.5"}));
   print("Papanastasiou's law for the elasto-viscoplastic one", added({"material.model=papanastasiou"}));
+  print("APIC that acts over 20 ms, for one that acts in every step",
+        compare(FlowingSlump(base), FlowingSlump(base, {}, 0.02)));
+  print("a wall of friction for one that is held by the grid (both over 20 ms)",
+        compare(FlowingSlump(base, {}, 0.02),
+                FlowingSlump(with(base, {"walls.base={ friction = 0.3 }"}), {}, 0.02)));
+  print("gauges every 50 ms", gauge_cost(FlowingSlump(base)));
   print("linear-flip for quadratic-apic", added({"mpm.scheme=linear-flip"}));
   print("double for float", compare(FlowingSlump(with(base, {"mpm.precision=float"})), FlowingSlump(base)));
   const auto linear =

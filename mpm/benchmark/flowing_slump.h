@@ -14,15 +14,17 @@ namespace flowrest::mpm::bench {
 class FlowingSlump {
  public:
   /// @param set `KEY=VALUE` over the scene `roussel-slump`. @param change of the solver's settings, after
-  /// them.
+  /// them. The transfer acts once in every step, or over a time, s.
   explicit FlowingSlump(const std::vector<std::string>& set,
-                        const std::function<void(SolverSettings&)>& change = {}) {
+                        const std::function<void(SolverSettings&)>& change = {},
+                        double apic_relaxation_time = 0.0) {
     scenes::Overrides overrides;
     overrides.set = set;
     scene_ = std::make_unique<scenes::Scene>(scenes::load_scene("roussel-slump", overrides));
     SolverSettings settings = settings_of(*scene_);
     if (change) change(settings);
     solver_ = make_solver(settings, seed_particles(*scene_));
+    solver_->set_apic_relaxation_time(apic_relaxation_time);
     step_ = 0.5 * settings.cell / scene_->material.longitudinal_speed();
     for (int i = 0; i < steps_until_it_flows; ++i) advance();
   }
@@ -32,6 +34,9 @@ class FlowingSlump {
     time_ += step_;
   }
   const Solver& solver() const { return *solver_; }
+  Solver& solver() { return *solver_; }
+  const scenes::Scene& scene() const { return *scene_; }
+  double step() const { return step_; }  ///< s
   double particles() const { return static_cast<double>(solver_->particle_count()); }
 
  private:
