@@ -74,8 +74,9 @@ TEST(Verify, ComputesJudgesAndReportsOneCase) {
   ASSERT_EQ(findings.size(), 4u);
   for (const auto& f : findings) EXPECT_TRUE(f.passed) << f.of.variant << ": " << f.verdict;
   EXPECT_THAT(to_csv(findings), HasSubstr("Free fall"));
-  EXPECT_EQ(to_json(findings)["cases"].size(), 4u);
-  for (const auto& c : to_json(findings)["cases"])
+  const auto json = to_json(findings);
+  EXPECT_EQ(json["cases"].size(), 4u);
+  for (const auto& c : json["cases"])
     for (const auto& grid : c["grids"]) EXPECT_EQ(grid["trouble"], "") << "of what was computed";
   EXPECT_THAT(flowrest::report::render(page_of(findings)), HasSubstr("4 of 4 bounds hold"));
 }
