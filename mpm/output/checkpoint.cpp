@@ -16,8 +16,11 @@ template <class State, class Use>
 void each_member(State& s, Use use) {
   for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated,
                        &s.work, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles,
-                       &s.snapshots, &s.checkpoints})
+                       &s.snapshots, &s.checkpoints, &s.noise.judged_until})
     use(*member);
+  for (auto* noise : {&s.noise.within_cells, &s.noise.between_steps})
+    for (auto* member : {&noise->time, &noise->path, &noise->motion, &noise->first, &noise->last})
+      use(*member);
 }
 
 std::filesystem::path file_in(const std::filesystem::path& directory) { return directory / "checkpoint.h5"; }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "mpm/output/noise.h"
 #include "mpm/solver/solver.h"
 
 namespace flowrest::mpm {
@@ -23,6 +24,7 @@ struct RunState {
   double cpu = 0.0;               ///< s, spent so far
   double wall = 0.0;              ///< s
   double histories = 0.0, profiles = 0.0, snapshots = 0.0, checkpoints = 0.0;  ///< outputs made so far
+  NoiseRecord noise;
 };
 
 struct Checkpoint {

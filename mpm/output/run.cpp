@@ -11,6 +11,7 @@
 
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/gauges.h"
+#include "mpm/output/noise.h"
 #include "mpm/output/snapshot.h"
 #include "mpm/sampling/sampling.h"
 #include "mpm/solver/settings.h"
@@ -61,6 +62,7 @@ class MpmRun {
         options_(options),
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
         gauges_(scene_),
+        noise_(settings_.dimension, settings_.cell),
         factor_(whole_body_factor(scene)),
         // Before anything is written: seeding may need a program that is missing.
         solver_(checkpoint ? make_solver(settings_, checkpoint->solver)
@@ -105,6 +107,7 @@ class MpmRun {
     } else {
       gauge();
     }
+    noise_.begin();
     while (state_.time < scene_.time.end) {
       if (options_.interrupted())
         return stop(runs::Status::interrupted,
@@ -113,6 +116,7 @@ class MpmRun {
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= scene_.time.end) {
         gauge();
         output();
+        noise_.begin();
         if (at_rest()) return stop(runs::Status::at_rest, "");
       }
     }
@@ -166,6 +170,7 @@ class MpmRun {
       state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
     state_.time = step >= target - state_.time ? target : state_.time + step;
+    if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
     const double sound = scene_.material.longitudinal_speed();
     if (result.largest_speed > 2.0 * sound + free_fall_speed())
       throw runs::NumericsError(fmt::format(
@@ -306,6 +311,12 @@ class MpmRun {
                             {"grid_to_particles", t.grid_to_particles},
                             {"sorting", t.sorting},
                             {"volumes", t.volumes}};
+    const auto seen = [](const NoiseSeen& n, double bound) {
+      return nlohmann::ordered_json{{"bound_share_of_speed", bound}, {"above_s", n.time}, {"path_m", n.path}};
+    };
+    info["noise"] = {{"within_cells", seen(state_.noise.within_cells, NoiseRecord::within_cells_bound)},
+                     {"between_steps", seen(state_.noise.between_steps, NoiseRecord::between_steps_bound)},
+                     {"path_allowed_m", NoiseRecord::path_allowed * scene_.body_height()}};
     info["growth_to_come"] = can_rest() ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
     info["rest_time_s"] =
         has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
@@ -342,6 +353,8 @@ class MpmRun {
     if (scene_.mpm.time_step && *scene_.mpm.time_step > limits.largest())
       return fmt::format("noisy: the step of {:.2g} s is past the stable limit of {:.2g} s",
                          *scene_.mpm.time_step, limits.largest());
+    if (const std::string noise = state_.noise.fault(scene_.body_height()); !noise.empty())
+      return "noisy: " + noise;
     if (scene_.kind == scenes::Kind::slump) {
       const double cells = runs::centre_depth(measures_.coordinate, measures_.value) / settings_.cell;
       if (cells < cells_over_depth_wanted)
@@ -395,6 +408,7 @@ class MpmRun {
   RunOptions options_;
   SolverSettings settings_;
   Gauges gauges_;
+  NoiseMeter noise_;
   double factor_;
   double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
   std::unique_ptr<Solver> solver_;
