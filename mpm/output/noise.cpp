@@ -9,8 +9,8 @@ namespace flowrest::mpm {
 
 namespace {
 
-/// Steps from one measurement to the next: three are looked at.
-constexpr int fewest_steps_between = 20;
+/// Steps from one measurement to the next, so that it costs little; three are looked at.
+constexpr int fewest_steps_between = 200;
 /// Particles that spread less than this share of a cell along an axis say nothing of a gradient along it.
 constexpr double least_extent = 1e-3;
 
@@ -19,6 +19,14 @@ CellIndex cell_of(const ParticleBatch& batch, std::size_t particle, int dimensio
   for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
     index[a] = static_cast<std::int32_t>(std::floor(batch.position[a][particle] / cell));
   return index;
+}
+
+/// Particles come cell by cell: where those of the cell of particle `begin` end.
+std::size_t end_of_cell(const ParticleBatch& batch, std::size_t begin, int dimension, double cell) {
+  const CellIndex here = cell_of(batch, begin, dimension, cell);
+  std::size_t end = begin + 1;
+  while (end < batch.count && cell_of(batch, end, dimension, cell) == here) ++end;
+  return end;
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -94,37 +102,47 @@ std::string words(const NoiseSeen& seen, const std::string& what) {
 
 }  // namespace
 
-VelocityNoise noise_within_cells(Solver& solver, int dimension, double cell, std::vector<CellMotion>* means) {
+std::vector<CellMotion> motion_of_cells(Solver& solver, int dimension, double cell) {
+  std::vector<CellMotion> cells;
+  solver.visit_motion([&](const ParticleBatch& batch) {
+    for (std::size_t begin = 0, end = 0; begin < batch.count; begin = end) {
+      end = end_of_cell(batch, begin, dimension, cell);
+      CellMotion& here = cells.emplace_back();
+      here.cell = cell_of(batch, begin, dimension, cell);
+      for (std::size_t i = begin; i < end; ++i) {
+        here.mass += batch.mass[i];
+        for (std::size_t a = 0; a < 3; ++a) here.velocity[a] += batch.mass[i] * batch.velocity[a][i];
+      }
+      for (double& v : here.velocity) v /= here.mass;
+    }
+  });
+  std::sort(cells.begin(), cells.end(),
+            [](const CellMotion& a, const CellMotion& b) { return a.cell < b.cell; });
+  return cells;
+}
+
+VelocityNoise noise_within_cells(Solver& solver, int dimension, double cell) {
   const auto axes = static_cast<std::size_t>(dimension);
   LinearFit fit(cell);
   double mass = 0.0, motion = 0.0, judged_mass = 0.0, noise = 0.0;
-  if (means) means->clear();
-  solver.visit([&](const ParticleBatch& batch) {
-    // Particles come cell by cell.
+  solver.visit_motion([&](const ParticleBatch& batch) {
     for (std::size_t begin = 0, end = 0; begin < batch.count; begin = end) {
-      CellMotion here{cell_of(batch, begin, dimension, cell), 0.0, {}};
-      for (end = begin; end < batch.count && cell_of(batch, end, dimension, cell) == here.cell; ++end) {
-        here.mass += batch.mass[end];
-        for (std::size_t a = 0; a < axes; ++a) {
-          here.velocity[a] += batch.mass[end] * batch.velocity[a][end];
-          motion += batch.mass[end] * batch.velocity[a][end] * batch.velocity[a][end];
-        }
+      end = end_of_cell(batch, begin, dimension, cell);
+      double here = 0.0;
+      for (std::size_t i = begin; i < end; ++i) {
+        here += batch.mass[i];
+        for (const auto& v : batch.velocity) motion += batch.mass[i] * v[i] * v[i];
       }
-      mass += here.mass;
-      for (double& v : here.velocity) v /= here.mass;
-      if (means) means->push_back(here);
+      mass += here;
       fit.positions(batch, begin, end, dimension);
       if (fit.freedom() == 0) continue;
-      judged_mass += here.mass;
-      for (std::size_t a = 0; a < axes; ++a) noise += here.mass * fit.residual(batch.velocity[a], begin, end);
+      judged_mass += here;
+      for (std::size_t a = 0; a < axes; ++a) noise += here * fit.residual(batch.velocity[a], begin, end);
     }
   });
   VelocityNoise found;
   if (mass > 0.0) found.speed = std::sqrt(motion / mass);
   if (judged_mass > 0.0) found.within_cells = std::sqrt(noise / judged_mass);
-  if (means)
-    std::sort(means->begin(), means->end(),
-              [](const CellMotion& a, const CellMotion& b) { return a.cell < b.cell; });
   return found;
 }
 
@@ -156,8 +174,9 @@ bool NoiseMeter::add(Solver& solver, double step) {
   const auto moment = static_cast<std::size_t>(since_begin_++);
   if (moment >= moments_.size()) return false;
   steps_[moment] = step;
-  noise_ = noise_within_cells(solver, dimension_, cell_, &moments_[moment]);
+  moments_[moment] = motion_of_cells(solver, dimension_, cell_);
   if (moment + 1 < moments_.size()) return false;
+  noise_ = noise_within_cells(solver, dimension_, cell_);
   noise_.between_steps = alternation(moments_, steps_[1], steps_[2]);
   return true;
 }
@@ -170,7 +189,7 @@ void NoiseRecord::add(double time, const VelocityNoise& noise) {
 
 std::string NoiseRecord::fault(double body_height) const {
   if (within_cells.path > path_allowed * body_height)
-    return words(within_cells, "velocities differ within cells, where no motion of the grid does");
+    return words(within_cells, "velocities differ within cells in ways that the grid does not feel");
   if (between_steps.path > path_allowed * body_height)
     return words(between_steps, "velocities alternate from step to step");
   return {};

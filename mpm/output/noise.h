@@ -23,17 +23,19 @@ struct CellMotion {
   std::array<double, 3> velocity{};  ///< m/s
 };
 
-/// What velocities differ by within cells, unbiased, rms over the mass of cells that hold enough particles to
-/// tell; and, if asked for, the cells' means.
-VelocityNoise noise_within_cells(Solver&, int dimension, double cell,
-                                 std::vector<CellMotion>* means = nullptr);
+/// The mean motion of every cell's particles, in the order of cells.
+std::vector<CellMotion> motion_of_cells(Solver&, int dimension, double cell);
+
+/// How far velocities within cells differ from fields linear in space: rms over the mass of the cells that
+/// hold enough particles to tell, each residual over its degrees of freedom. `between_steps` is left out.
+VelocityNoise noise_within_cells(Solver&, int dimension, double cell);
 
 /// The amplitude of what alternates from step to step, rms over the mass of the cells that three moments have
 /// in common, m/s. A constant acceleration is none; `first` and `second` are the steps between the moments,
 /// s.
 double alternation(const std::array<std::vector<CellMotion>, 3>& moments, double first, double second);
 
-/// Measures noise in the three steps after an output, at most once in twenty steps, so that it costs nothing.
+/// Measures noise in the three steps after an output, at most once in 200 steps, so that it costs little.
 class NoiseMeter {
  public:
   NoiseMeter(int dimension, double cell) : dimension_(dimension), cell_(cell) {}

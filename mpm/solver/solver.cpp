@@ -89,6 +89,15 @@ class SolverOf final : public Solver {
     }
   }
 
+  void visit_motion(const std::function<void(const ParticleBatch&)>& use) override {
+    settle();
+    ParticleBatch batch;
+    for (const auto slot : blocks_.occupied()) {
+      fill_motion(batch, blocks_.view(slot));
+      use(batch);
+    }
+  }
+
   SolverState state() override {
     settle();
     SolverState out;
@@ -380,23 +389,13 @@ class SolverOf final : public Solver {
     for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), taken_);
   }
 
-  void fill(ParticleBatch& batch, const BlockView& block) {
+  void fill_motion(ParticleBatch& batch, const BlockView& block) {
     const ParticleView<T>& v = particles_.view();
     const int dim = settings_.dimension, cells = power(block_edge, dim);
-    const std::size_t count = block.start[cells];
-    batch.count = count;
-    for (auto& a : batch.position) a.assign(count, 0.0);
-    for (auto& a : batch.velocity) a.assign(count, 0.0);
-    for (auto* a : {&batch.mass, &batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure,
-                    &batch.elastic_energy})
-      a->resize(count);
-    batch.flocculation.resize(v.lambda ? count : 0);
-    if (smooth()) {
-      std::vector<T> pressure(count);
-      kernels_.acting_pressure(parameters_, v, block, {nullptr, nullptr, averages_.data()},
-                               workspaces_.front(), pressure.data());
-      batch.acting_pressure.assign(pressure.begin(), pressure.end());
-    }
+    batch.count = block.start[cells];
+    for (auto& a : batch.position) a.assign(batch.count, 0.0);
+    for (auto& a : batch.velocity) a.assign(batch.count, 0.0);
+    batch.mass.resize(batch.count);
     for (int cell = 0; cell < cells; ++cell) {
       const int in_block[3] = {dim == 3 ? cell / 16 : cell / 4, dim == 3 ? cell / 4 % 4 : cell % 4, cell % 4};
       for (std::size_t i = block.start[cell]; i < block.start[cell + 1]; ++i) {
@@ -407,18 +406,37 @@ class SolverOf final : public Solver {
               (block.origin[a] + in_block[a] + static_cast<double>(v.position[a][p])) * settings_.cell;
           batch.velocity[axis][i] = static_cast<double>(v.velocity[a][p]);
         }
-        const double ratio = static_cast<double>(v.volume_ratio[p]);
         batch.mass[i] = static_cast<double>(v.mass[p]);
-        batch.volume[i] = batch.mass[i] / settings_.density * ratio;
-        batch.rate[i] = static_cast<double>(v.rate[p]);
-        batch.shear_stress[i] = shear_stress(p);
-        batch.raw_pressure[i] = static_cast<double>(v.pressure[p]);
-        if (v.lambda) batch.flocculation[i] = static_cast<double>(v.lambda[p]);
-        const double shape = settings_.explicit_fluid ? 0.0
-                                                      : batch.shear_stress[i] * batch.shear_stress[i] /
-                                                            (2.0 * settings_.state.at(ratio).shear) * ratio;
-        batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + settings_.state.energy(ratio));
       }
+    }
+  }
+
+  void fill(ParticleBatch& batch, const BlockView& block) {
+    fill_motion(batch, block);
+    const ParticleView<T>& v = particles_.view();
+    const std::size_t count = batch.count;
+    for (auto* a :
+         {&batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure, &batch.elastic_energy})
+      a->resize(count);
+    batch.flocculation.resize(v.lambda ? count : 0);
+    if (smooth()) {
+      std::vector<T> pressure(count);
+      kernels_.acting_pressure(parameters_, v, block, {nullptr, nullptr, averages_.data()},
+                               workspaces_.front(), pressure.data());
+      batch.acting_pressure.assign(pressure.begin(), pressure.end());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t p = block.first + i;
+      const double ratio = static_cast<double>(v.volume_ratio[p]);
+      batch.volume[i] = batch.mass[i] / settings_.density * ratio;
+      batch.rate[i] = static_cast<double>(v.rate[p]);
+      batch.shear_stress[i] = shear_stress(p);
+      batch.raw_pressure[i] = static_cast<double>(v.pressure[p]);
+      if (v.lambda) batch.flocculation[i] = static_cast<double>(v.lambda[p]);
+      const double shape = settings_.explicit_fluid ? 0.0
+                                                    : batch.shear_stress[i] * batch.shear_stress[i] /
+                                                          (2.0 * settings_.state.at(ratio).shear) * ratio;
+      batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + settings_.state.energy(ratio));
     }
   }
 

@@ -107,6 +107,8 @@ class Solver {
   virtual Vector wall_force(std::size_t wall) const = 0;
   /// Calls `use` for every block in turn.
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
+  /// The same with positions, velocities and masses alone, which cost little.
+  virtual void visit_motion(const std::function<void(const ParticleBatch&)>& use) = 0;
   virtual SolverState state() = 0;
   virtual std::size_t particle_count() const = 0;
   virtual std::size_t occupied_cells() const = 0;
