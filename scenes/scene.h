@@ -187,8 +187,8 @@ struct Mpm {
   Seeding seeding = Seeding::lattice;
   std::uint64_t seed = 1;  ///< of the jitter
   FluidUpdate fluid_update = FluidUpdate::implicit_update;
-  std::optional<BBar> b_bar;           ///< smooth for `quadratic-apic`, cell_average for `linear-flip`
-  double flip_relaxation_time = 0.05;  ///< s, of `linear-flip`
+  std::optional<BBar> b_bar;                   ///< cell_average in ducts and for `linear-flip`, else smooth
+  double flip_relaxation_time = 0.05;          ///< s, of `linear-flip`
   std::optional<double> apic_relaxation_time;  ///< s, of `quadratic-apic`: its transfer acts once over this
   /// Share of an overlap of particles taken back per unit strain; 1 for `quadratic-apic`, 0.3 for
   /// `linear-flip`, whose filling is noisier, 0 for `paper` and in ducts.

@@ -242,7 +242,7 @@ std::vector<Key> mpm_keys() {
           "mpm.b_bar", AT(draft.scene.mpm.b_bar),
           "how volumetric strain and pressure are averaged: through the nodes by the functions' own weights, "
           "or over a cell's particles")
-          .otherwise("smooth; linear-flip cell-average; neither with paper"),
+          .otherwise("smooth; ducts and linear-flip cell-average; neither with paper"),
       number("mpm.flip_relaxation_time", "s", above(0.0, largest_time),
              AT(draft.scene.mpm.flip_relaxation_time),
              "time over which linear-flip forgets a particle's own velocity"),

@@ -401,7 +401,8 @@ class MpmRun {
          {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
           std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
           std::pair{"volumes", t.volumes}, std::pair{"gauges and output", std::max(0.0, wall - listed)}})
-      fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
+      if (seconds > 0.0)
+        fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
   }
 
   scenes::Scene scene_;
