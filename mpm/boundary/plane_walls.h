@@ -9,17 +9,13 @@ namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 /// `to`.
 template <int Dim, class Use>
 FLOWREST_INLINE void across_layers(int a, int from, int to, Use use) {
-  const int edge[3] = {arena_edge, Dim == 3 ? arena_edge : 1, arena_edge};
-  const int axis = Dim == 2 && a == 1 ? 2 : a;
-  int n[3];
-  for (n[0] = 0; n[0] < edge[0]; ++n[0])
-    for (n[1] = 0; n[1] < edge[1]; ++n[1])
-      for (n[2] = 0; n[2] < edge[2]; ++n[2]) {
-        if (n[axis] != from) continue;
-        int m[3] = {n[0], n[1], n[2]};
-        m[axis] = to;
-        use(arena_index<Dim>(n[0], n[1], n[2]), arena_index<Dim>(m[0], m[1], m[2]));
-      }
+  const int strides[3] = {arena_index<Dim>(1, 0, 0), Dim == 3 ? arena_index<Dim>(0, 1, 0) : 1, 1};
+  const int stride = strides[a], others[2] = {strides[a == 0 ? 1 : 0], strides[a == 2 ? 1 : Dim - 1]};
+  for (int i = 0; i < (Dim == 3 ? arena_edge : 1); ++i)
+    for (int j = 0; j < arena_edge; ++j) {
+      const int place = i * others[0] + j * (Dim == 3 ? others[1] : others[0]);
+      use(place + from * stride, place + to * stride);
+    }
 }
 
 /// Whether a wall turns the sign of velocity component `c` in the mirrored body. `a` is the wall's own axis.

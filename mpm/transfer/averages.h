@@ -104,9 +104,9 @@ void load_average(const StepParameters<T>& step, const BlockView& block, const T
             Dim == 3 ? (i / block_edge) * 4 + (j / block_edge) * 2 + half : (i / block_edge) * 2 + half;
         const int local = Dim == 3 ? (i % block_edge * block_edge + j % block_edge) * block_edge
                                    : i % block_edge * block_edge;
-        const T* from = averages_of<Dim>(averages, block.plus[delta], which) + local;
-        T* to = plane + arena_index<Dim>(i, j, half * block_edge);
-        for (int n = 0; n < (half == 0 ? block_edge : arena_edge - block_edge); ++n) to[n] = from[n];
+        // What a row gets too much, the next one puts right.
+        record_at(plane + arena_index<Dim>(i, j, half * block_edge)) =
+            record_at(averages_of<Dim>(averages, block.plus[delta], which) + local);
       }
   for (int a = 0; a < Dim; ++a)
     for (int side = 0; side < 2; ++side) {
@@ -123,33 +123,35 @@ void load_average(const StepParameters<T>& step, const BlockView& block, const T
 template <class T, int Dim>
 struct CellScalar {
   static constexpr int rows = Dim == 3 ? 3 : 1;
-  T value[3][rows][3];
+  static_assert(record == 4);
+  alignas(64) T value[3][rows][record];
 
   FLOWREST_INLINE explicit CellScalar(const T* plane) {
+    Record<T> row[3][rows];
+    constexpr Record<T> outer = {1, 0, 1, 0};
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
 #pragma GCC unroll 3
       for (int j = 0; j < rows; ++j) {
         const T* u = plane + arena_index<Dim>(i, j, 0);
-        value[i][j][0] = u[0] - u[1];
-        value[i][j][1] = u[1];
-        value[i][j][2] = u[2] - u[1];
+        row[i][j] = record_at(u) - u[1] * outer;
       }
+    if constexpr (Dim == 3) {
 #pragma GCC unroll 3
-    for (int k = 0; k < 3; ++k) {
-      if constexpr (Dim == 3) {
-#pragma GCC unroll 3
-        for (int i = 0; i < 3; ++i) {
-          value[i][0][k] -= value[i][1][k];
-          value[i][2][k] -= value[i][1][k];
-        }
-      }
-#pragma GCC unroll 3
-      for (int j = 0; j < rows; ++j) {
-        value[0][j][k] -= value[1][j][k];
-        value[2][j][k] -= value[1][j][k];
+      for (int i = 0; i < 3; ++i) {
+        row[i][0] -= row[i][1];
+        row[i][2] -= row[i][1];
       }
     }
+#pragma GCC unroll 3
+    for (int j = 0; j < rows; ++j) {
+      row[0][j] -= row[1][j];
+      row[2][j] -= row[1][j];
+    }
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+      for (int j = 0; j < rows; ++j) record_at(value[i][j]) = row[i][j];
   }
 
   template <int Bytes>
@@ -201,12 +203,14 @@ void sum_plane(const NodeView& view, const T* arenas, int scalar, T* sum) {
     const int di = delta >> (Dim - 1) & 1, dj = Dim == 3 ? delta >> 1 & 1 : 0, dk = delta & 1;
     const T* plane = arenas + arena * arena_values + scalar * plane_values<Dim>;
     constexpr int behind = arena_edge - block_edge;
+    static_assert(behind == 2 && block_edge == record);
+    const T last = dk ? T(0) : T(1);  // behind the block an arena's row has two nodes of its own
+    const Record<T> own = {T(1), T(1), last, last};
     for (int i = 0; i < (di ? behind : block_edge); ++i)
-      for (int j = 0; j < (dj ? behind : edge_j); ++j) {
-        const T* from = plane + arena_index<Dim>(i + di * block_edge, j + dj * block_edge, dk * block_edge);
-        T* to = sum + (Dim == 3 ? (i * block_edge + j) * block_edge : i * block_edge);
-        for (int k = 0; k < (dk ? behind : block_edge); ++k) to[k] += from[k];
-      }
+      for (int j = 0; j < (dj ? behind : edge_j); ++j)
+        record_at(sum + (Dim == 3 ? (i * block_edge + j) * block_edge : i * block_edge)) +=
+            own *
+            record_at(plane + arena_index<Dim>(i + di * block_edge, j + dj * block_edge, dk * block_edge));
   }
 }
 
