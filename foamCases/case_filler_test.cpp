@@ -153,6 +153,30 @@ TEST(CaseFiller, TheStepNeverPassesASampleAndObeysTheScene) {
             0.05);
 }
 
+/// The plug-in watches every run; only a slump's step grows, and only where nothing holds it.
+TEST(CaseFiller, ASlumpsStepGrowsWhereThePlugInWatches) {
+  const auto watched = [](const scenes::Scene& scene) { return entries(scene_parameters(scene, true)); };
+  const auto slump = watched(roussel_slump("papanastasiou"));
+  EXPECT_DOUBLE_EQ(std::stod(slump.at("least")), 0.0046);
+  EXPECT_DOUBLE_EQ(std::stod(slump.at("most")), 0.4 * 0.05);  // two fifths of the history's interval
+  EXPECT_DOUBLE_EQ(std::stod(slump.at("ofTime")), 0.004);
+  EXPECT_DOUBLE_EQ(std::stod(slump.at("maxDeltaT")), 0.0046);
+  EXPECT_EQ(slump.at("pressureCorrectors"), "12");
+  EXPECT_DOUBLE_EQ(std::stod(watched(roussel_slump("papanastasiou", {"foam.step_growth=3"})).at("most")),
+                   3 * 0.0046);
+  for (const char* held : {"foam.step_growth=1", "foam.max_time_step=0.002"}) {
+    const auto values = watched(roussel_slump("papanastasiou", {held}));
+    EXPECT_EQ(values.at("least"), values.at("most")) << held;
+    EXPECT_EQ(values.at("least"), values.at("maxDeltaT")) << held;
+  }
+  const auto duct = watched(scenes::load_scene("poiseuille-step-down", {{}, scenes::Model::papanastasiou}));
+  EXPECT_EQ(duct.at("least"), duct.at("most"));
+  EXPECT_EQ(watched(roussel_slump("elasto-viscoplastic")).at("pressureCorrectors"), "6");
+  const auto unwatched = entries(scene_parameters(roussel_slump("papanastasiou"), false));
+  EXPECT_FALSE(unwatched.contains("most"));
+  EXPECT_EQ(unwatched.at("pressureCorrectors"), "6");
+}
+
 TEST(CaseFiller, RefusesWhatTheCaseCannotRun) {
   EXPECT_EQ(refusal("elasto-viscoplastic", {}), "accepted");
   EXPECT_THAT(refusal("papanastasiou", {"geometry.dimension=plane"}),

@@ -6,6 +6,7 @@
 
 #include "foamCases/vessel_mesh.h"
 #include "foamCases/viscosity.h"
+#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -107,20 +108,41 @@ std::string plug_in_stress(const Scene& scene) {
       material.youngs_modulus, indent, material.poisson_ratio, common_coefficients(scene, indent));
 }
 
+std::string function_object(const std::string& type, const std::string& keywords) {
+  return fmt::format(
+      "    {0}\n    {{\n        type            {0};\n        libs            $rheologyLibraries;\n{1}    "
+      "}}\n",
+      type, keywords);
+}
+
+/// Watches the velocity from step to step, and lets a slump's step grow.
+std::string staged_step(const Scene& scene) {
+  constexpr double cells_per_second = 1e-3;
+  return function_object("stagedStep",
+                         fmt::format("        least           {};  // s\n        most            {};  // s\n"
+                                     "        ofTime          {};\n        stillness       {};  // m/s\n",
+                                     scenes::largest_foam_step(scene), scenes::grown_foam_step(scene),
+                                     scenes::foam_step_of_time, cells_per_second * scene.foam.cell));
+}
+
 /// What is done to the concrete after every step, or read off it.
 std::string after_every_step(const Scene& scene, bool plug_in) {
+  std::string text;
   if (plug_in && is_vessel(scene))
-    return fmt::format(
-        "afterEveryStep\n{{\n    shearRate\n    {{\n        type            shearRate;\n        libs         "
-        "   "
-        "$rheologyLibraries;\n        strainRate      {};\n    }}\n}}\n",
-        scenes::to_string(scene.foam.strain_rate));
-  if (!plug_in || !(scene.foam.air_rise_time.value_or(0.0) > 0.0) || scene.kind != scenes::Kind::slump)
-    return "afterEveryStep\n{\n}\n";
-  return fmt::format(
-      "afterEveryStep\n{{\n    airRises\n    {{\n        type            airRises;\n        libs            "
-      "$rheologyLibraries;\n        time            {};  // s\n    }}\n}}\n",
-      *scene.foam.air_rise_time);
+    text += function_object(
+        "shearRate", fmt::format("        strainRate      {};\n", scenes::to_string(scene.foam.strain_rate)));
+  if (plug_in && scene.kind == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
+    text += function_object("airRises",
+                            fmt::format("        time            {};  // s\n", *scene.foam.air_rise_time));
+  if (plug_in) text += staged_step(scene);
+  return fmt::format("afterEveryStep\n{{\n{}}}\n", text);
+}
+
+/// Correctors of the pressure. On thin rows at the base a fluid chatters with fewer, whatever its step.
+int pressure_correctors(const Scene& scene, bool plug_in) {
+  return plug_in && scene.kind == scenes::Kind::slump && scene.material.model != Model::elasto_viscoplastic
+             ? 12
+             : 6;
 }
 
 std::string stress_model(const Scene& scene, bool plug_in) {
@@ -146,9 +168,10 @@ std::string concrete_laws(const Scene& scene, bool plug_in) {
              "state.\n"
              "rheologyLibraries   ({});\n"
              "historyObjects      (alpha.concrete U{});\n"
-             "stateObjects        (alpha.concrete U p_rgh phi{}{});\n{}\n",
+             "stateObjects        (alpha.concrete U p_rgh phi{}{});\n"
+             "pressureCorrectors  {};\n{}\n",
              plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state,
-             after_every_step(scene, plug_in)) +
+             pressure_correctors(scene, plug_in), after_every_step(scene, plug_in)) +
          stress_model(scene, plug_in);
 }
 

@@ -11,12 +11,12 @@
 
 namespace flowrest::foam {
 
-DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
-    : Sampler(scene, std::move(fields), writer), height_(duct_cells(scene)) {
+DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
+    : Sampler(scene, std::move(fields), writer, plug_in), height_(duct_cells(scene)) {
   for (std::size_t i = 0; i < height_.size(); ++i)
     height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
-  std::vector<std::string> columns{
-      "time_s", "plug_velocity_m_s", "mean_velocity_m_s", "initial_residual_U", "courant_max", "time_step_s"};
+  std::vector<std::string> columns{"time_s", "plug_velocity_m_s", "mean_velocity_m_s"};
+  name_steps(columns);
   if (thixotropic()) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
@@ -35,9 +35,8 @@ void DuctSampler::sample(double time, const ReadField& read) {
   plug_velocity_ = cells() < 2 ? velocity.front() : 0.5 * (velocity[middle - 1] + velocity[middle]);
   mean_velocity_ = std::accumulate(velocity.begin(), velocity.end(), 0.0) / static_cast<double>(cells());
   if (history_is_due(time)) {
-    const SolverStep steps = since_last_row(time);
-    std::vector<double> row{time,          plug_velocity_, mean_velocity_, steps.initial_residual_u,
-                            steps.courant, steps.time_step};
+    std::vector<double> row{time, plug_velocity_, mean_velocity_};
+    add_steps(time, row);
     if (thixotropic()) {
       const auto state = flocculation(time, read);
       row.push_back(std::accumulate(state.begin(), state.end(), 0.0) / static_cast<double>(cells()));

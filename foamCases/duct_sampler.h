@@ -9,7 +9,7 @@ namespace flowrest::foam {
 /// Gauges a duct: the velocity profile of its one column of cells.
 class DuctSampler : public Sampler {
  public:
-  DuctSampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
+  DuctSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   std::size_t cells() const override { return height_.size(); }
   std::string progress() const override;

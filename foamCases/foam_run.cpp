@@ -83,8 +83,8 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
 std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
                                       runs::RunWriter& writer, bool plug_in) {
   if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
-  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer);
-  return std::make_unique<SlumpSampler>(scene, fields, writer);
+  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
+  return std::make_unique<SlumpSampler>(scene, fields, writer, plug_in);
 }
 
 /// Debian's OpenFOAM needs to be told where its etc folder is, and nothing else; Open MPI that root may use
@@ -114,15 +114,20 @@ std::string walls_differ(const scenes::Scene& scene) {
 }
 
 /// How the steps are bounded, in words.
-std::string step_rule(const scenes::Scene& scene) {
+std::string step_rule(const scenes::Scene& scene, bool plug_in) {
   const char* bound = "cell^2 density / plastic viscosity";
   if (scene.foam.max_time_step) {
     bound = "foam.max_time_step";
   } else if (scene.material.model == scenes::Model::elasto_viscoplastic) {
     bound = "1.5 cells at the speed of shear waves";
   }
-  return fmt::format("Courant number at most {:g}, step at most {:.4g} s ({})", scene.foam.max_courant,
-                     scenes::largest_foam_step(scene), bound);
+  const double first = scenes::largest_foam_step(scene), most = scenes::grown_foam_step(scene);
+  std::string rule = fmt::format("Courant number at most {:g}, step at most {:.4g} s ({})",
+                                 scene.foam.max_courant, first, bound);
+  if (plug_in && most > first)
+    rule += fmt::format(" or, where that is more, 1/{:g} of the time passed, up to {:.4g} s",
+                        1.0 / scenes::foam_step_of_time, most);
+  return rule;
 }
 
 void remove_parts(const fs::path& case_directory) {
@@ -366,11 +371,12 @@ class CaseRun {
     info.update(gauges());
     info["courant_max"] = max_courant_;
     info["time_step_max_s"] = max_time_step_;
-    info["time_step_rule"] = step_rule(scene_);
-    info["noise"] = {{"measure", "initial residual of U, median of blocks of steps"},
+    info["time_step_rule"] = step_rule(scene_, plug_in_.has_value());
+    info["noise"] = {{"measure", fmt::format("{}, median of blocks of steps", monitor_.measure().name)},
                      {"block_steps", NoiseMonitor::block_steps},
-                     {"bound", NoiseMonitor::bound},
+                     {"bound", monitor_.measure().bound},
                      {"largest_median", monitor_.largest_median()},
+                     {"largest_residual_median", monitor_.largest_residual_median()},
                      {"noisy_share", monitor_.noisy_share()}};
   }
 

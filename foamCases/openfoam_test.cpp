@@ -16,6 +16,7 @@
 #include "foamCases/test_scene.h"
 #include "runs/depth.h"
 #include "runs/process.h"
+#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 namespace {
@@ -314,6 +315,30 @@ TEST_F(PlugIn, ACopiedCaseWithoutTheLibrarySaysSo) {
   EXPECT_EQ(allrun.poll()->exit_code, 4);
   EXPECT_THAT(testing::text_of(folder_.path() / "log"),
               ::testing::HasSubstr("takes its laws from flowrest's plug-in"));
+}
+
+/// A stiff material starts with small steps, so that less than a second shows them grow with the time passed.
+TEST_F(PlugIn, ASlumpsStepGrowsAndItsVelocityIsWatched) {
+  const std::vector<std::string> set = {"foam.cell=0.03", "time.end=0.8", "material.youngs_modulus=4e6",
+                                        "time.stop_at_rest=false"};
+  const auto grown = run(roussel_slump("elasto-viscoplastic", set));
+  EXPECT_EQ(grown.info["verdict"], "sound");
+  EXPECT_THAT(grown.info["noise"]["measure"].get<std::string>(), ::testing::StartsWith("chatter"));
+  EXPECT_GT(grown.history.at("velocity_chatter").back(), 0.0);
+  const auto scene = roussel_slump("elasto-viscoplastic", set);
+  const auto& time = grown.history.at("time_s");
+  const auto& step = grown.history.at("time_step_s");
+  const double least = scenes::largest_foam_step(scene);
+  for (std::size_t i = 1; i < time.size(); ++i)
+    EXPECT_LE(step[i], 1.001 * std::max(least, scenes::foam_step_of_time * time[i])) << time[i];
+  EXPECT_NEAR(step.back(), scenes::foam_step_of_time * time.back(), 0.02 * step.back());
+  EXPECT_GT(step.back(), 1.2 * least);
+
+  auto held = set;
+  held.emplace_back("foam.step_growth=1");
+  const auto fixed = run(roussel_slump("elasto-viscoplastic", held));
+  EXPECT_LE(fixed.history.at("time_step_s").back(), 1.001 * least);
+  EXPECT_NEAR(grown.history.at("spread_mm").back(), fixed.history.at("spread_mm").back(), 1.0);
 }
 
 /// A slice of the driven duct: once the force is stepped down the material stops, and the run says so.

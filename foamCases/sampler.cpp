@@ -9,8 +9,8 @@
 
 namespace flowrest::foam {
 
-Sampler::Sampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
-    : scene_(scene), fields_(std::move(fields)), writer_(writer) {}
+Sampler::Sampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
+    : scene_(scene), fields_(std::move(fields)), writer_(writer), plug_in_(plug_in) {}
 
 void Sampler::note(const SolverStep& step) { steps_.push_back(step); }
 
@@ -21,10 +21,24 @@ SolverStep Sampler::since_last_row(double time) {
     const SolverStep& step = steps_.front();
     all.initial_residual_u = std::max(all.initial_residual_u, step.initial_residual_u);
     all.courant = std::max(all.courant, step.courant);
+    if (step.chatter) all.chatter = std::max(all.chatter.value_or(0.0), *step.chatter);
     all.time_step = step.time_step;
     steps_.pop_front();
   }
   return all;
+}
+
+void Sampler::name_steps(std::vector<std::string>& columns) const {
+  columns.emplace_back("initial_residual_U");
+  if (plug_in_) columns.emplace_back("velocity_chatter");
+  columns.insert(columns.end(), {"courant_max", "time_step_s"});
+}
+
+void Sampler::add_steps(double time, std::vector<double>& row) {
+  const SolverStep steps = since_last_row(time);
+  row.push_back(steps.initial_residual_u);
+  if (plug_in_) row.push_back(steps.chatter.value_or(0.0));
+  row.insert(row.end(), {steps.courant, steps.time_step});
 }
 
 void Sampler::sample_before(double complete_before) {
@@ -69,8 +83,8 @@ bool Sampler::profile_is_due(double time) {
 /// interFoam samples at the first step past half a step before each multiple, so a sample may come a little
 /// early. The end is always due.
 bool Sampler::is_due(double time, double interval, double& next) const {
-  const double early = 0.51 * std::min(scenes::largest_foam_step(scene_), sample_interval(scene_));
-  const bool at_end = time > scene_.time.end - scenes::largest_foam_step(scene_);
+  const double early = 0.51 * std::min(scenes::grown_foam_step(scene_), sample_interval(scene_));
+  const bool at_end = time > scene_.time.end - scenes::grown_foam_step(scene_);
   if (time + early < next && !at_end) return false;
   next = (std::floor((time + early) / interval) + 1.0) * interval;
   return true;

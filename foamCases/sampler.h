@@ -46,14 +46,18 @@ class Sampler {
   virtual nlohmann::ordered_json summary() const = 0;
 
  protected:
-  Sampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
+  /// `plug_in`: whether the plug-in watches the steps, too.
+  Sampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   virtual void sample(double time, const ReadField&) = 0;
 
   const scenes::Scene& scene() const { return scene_; }
   runs::RunWriter& writer() { return writer_; }
-  /// The largest residual and Courant number, and the last step, since the last row.
-  SolverStep since_last_row(double time);
+  bool plug_in() const { return plug_in_; }
+  /// What a row says of the steps since the last: the largest residual, chatter and Courant number, and the
+  /// last step.
+  void name_steps(std::vector<std::string>& columns) const;
+  void add_steps(double time, std::vector<double>& row);
   /// Whether concrete carries flocculation, which a Newtonian fluid has no use for.
   bool thixotropic() const;
   /// The field of the flocculation, as it is at the start while the solver has not written it yet.
@@ -62,11 +66,13 @@ class Sampler {
   bool profile_is_due(double time);
 
  private:
+  SolverStep since_last_row(double time);
   bool is_due(double time, double interval, double& next) const;
 
   const scenes::Scene& scene_;
   CaseFields fields_;
   runs::RunWriter& writer_;
+  bool plug_in_;
   std::optional<double> last_sampled_;
   double next_history_ = 0.0;
   double next_profile_ = 0.0;

@@ -18,23 +18,14 @@ constexpr double volume_bound = 0.1;      // relative; a bounded phase fraction 
 
 }  // namespace
 
-SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer)
-    : Sampler(scene, std::move(fields), writer), mesh_(slump_mesh(scene)) {
-  std::vector<std::string> columns{"time_s",
-                                   "spread_mm",
-                                   "spread_1p5_mm",
-                                   "spread_6_mm",
-                                   "front_mm",
-                                   "height_mm",
-                                   "volume_m3",
-                                   "kinetic_energy_J",
-                                   "shear_rate_p99_1_s",
-                                   "base_shear_rate_p99_1_s",
-                                   "initial_residual_U",
-                                   "courant_max",
-                                   "time_step_s",
-                                   "trapped_air_m3",
-                                   "volume_error"};
+SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
+                           bool plug_in)
+    : Sampler(scene, std::move(fields), writer, plug_in), mesh_(slump_mesh(scene)) {
+  std::vector<std::string> columns{
+      "time_s",    "spread_mm", "spread_1p5_mm",    "spread_6_mm",        "front_mm",
+      "height_mm", "volume_m3", "kinetic_energy_J", "shear_rate_p99_1_s", "base_shear_rate_p99_1_s"};
+  name_steps(columns);
+  columns.insert(columns.end(), {"trapped_air_m3", "volume_error"});
   if (thixotropic()) columns.push_back("flocculation_mean");
   writer.history_columns(columns);
 }
@@ -65,7 +56,6 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
   const auto spread_mm = [&](double threshold) {
     return 1e3 * runs::spread(gauges.radius, gauges.depth, threshold);
   };
-  const SolverStep steps = since_last_row(time);
   std::vector<double> row{time,
                           spread_mm(0.003),
                           spread_mm(0.0015),
@@ -75,12 +65,9 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
                           gauges.volume,
                           gauges.kinetic_energy,
                           gauges.shear_rate_p99,
-                          gauges.base_shear_rate_p99,
-                          steps.initial_residual_u,
-                          steps.courant,
-                          steps.time_step,
-                          gauges.trapped_air,
-                          gauges.volume / state_.first_volume - 1.0};
+                          gauges.base_shear_rate_p99};
+  add_steps(time, row);
+  row.insert(row.end(), {gauges.trapped_air, gauges.volume / state_.first_volume - 1.0});
   if (thixotropic()) row.push_back(state_.flocculation);
   writer().history(row);
 }

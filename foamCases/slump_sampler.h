@@ -29,7 +29,7 @@ struct SlumpState {
 /// Gauges a slump, in a wedge or a quarter.
 class SlumpSampler : public Sampler {
  public:
-  SlumpSampler(const scenes::Scene&, CaseFields, runs::RunWriter&);
+  SlumpSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   std::size_t cells() const override { return mesh_->cells(); }
   std::string progress() const override;

@@ -15,6 +15,12 @@ namespace {
 /// A fatal error's message: some lines of it tell more than the first.
 constexpr int fatal_lines = 6;
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// The number that follows `key` in `line`, if both are there.
 std::optional<double> number_after(std::string_view line, std::string_view key) {
   const auto found = line.find(key);
@@ -64,8 +70,11 @@ void SolverLog::read_line(std::string_view line) {
              components_.find(line[solved + 13]) != std::string::npos) {
     step_.initial_residual_u =
         std::max(step_.initial_residual_u, number_after(line, "Initial residual =").value_or(0.0));
+  } else if (line.starts_with("Chatter of U =")) {
+    chatter_ = number_after(line, "=");
   } else if (line.starts_with("ExecutionTime") && in_step_) {
     execution_time_ = number_after(line, "=").value_or(execution_time_);
+    step_.chatter = std::exchange(chatter_, std::nullopt);
     steps_.push_back(step_);
     in_step_ = false;
   } else if (line == "End") {
@@ -117,12 +126,17 @@ void NoiseMonitor::finish() {
 
 void NoiseMonitor::end_block() {
   if (blocks_++ > 0) {
-    std::vector<double> residuals;
-    for (const auto& step : block_) residuals.push_back(step.initial_residual_u);
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    largest_median_ = std::max(largest_median_, *middle);
-    if (*middle > bound) {
+    std::vector<double> residuals, chatters;
+    for (const auto& step : block_) {
+      residuals.push_back(step.initial_residual_u);
+      if (step.chatter) chatters.push_back(*step.chatter);
+    }
+    const double middle_residual = median(residuals);
+    largest_residual_median_ = std::max(largest_residual_median_, middle_residual);
+    measure_ = 2 * chatters.size() >= block_.size() ? &chatter : &residual;
+    const double middle = measure_ == &chatter ? median(chatters) : middle_residual;
+    largest_median_ = std::max(largest_median_, middle);
+    if (middle > measure_->bound) {
       if (noisy_++ == 0) first_noisy_ = block_.front().time;
       last_noisy_ = block_.back().time;
     }
@@ -139,10 +153,11 @@ std::string NoiseMonitor::verdict() const {
     return fmt::format("unjudged: the run has fewer than {} steps", block_steps + fewest_steps);
   if (noisy_ == 0) return "sound";
   return fmt::format(
-      "noisy: the initial residual of U passes {} (median of {} steps) in {:.0f} % of the run, between "
+      "noisy: the {} passes {} (median of {} steps) in {:.0f} % of the run, between "
       "{:.2f} and "
       "{:.2f} s, and reaches {:.2g}; part of the spreading may be noise of the time step",
-      bound, block_steps, std::max(1.0, 100.0 * noisy_share()), first_noisy_, last_noisy_, largest_median_);
+      measure_->name, measure_->bound, block_steps, std::max(1.0, 100.0 * noisy_share()), first_noisy_,
+      last_noisy_, largest_median_);
 }
 
 }  // namespace flowrest::foam

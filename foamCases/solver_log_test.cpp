@@ -101,6 +101,19 @@ TEST(FileTail, GivesOnlyWhatIsNew) {
   EXPECT_EQ(tail.read(), " two");
 }
 
+/// What the plug-in prints comes between the end of a step and the beginning of the next.
+TEST(SolverLog, ReadsTheChatterOfAVelocityThatIsWatched) {
+  SolverLog log;
+  const std::string watched = "Change of U = 0.02\nChatter of U = 0.003\n";
+  log.feed(step_text(0.1, 0.1, 0.01) + step_text(0.2, 0.1, 0.01) + watched + step_text(0.3, 0.1, 0.01) +
+           step_text(0.4, 0.1, 0.01));
+  const auto steps = log.take_steps();
+  ASSERT_EQ(steps.size(), 4U);
+  EXPECT_FALSE(steps[1].chatter);
+  EXPECT_EQ(steps[2].chatter, 0.003);
+  EXPECT_FALSE(steps[3].chatter);
+}
+
 NoiseMonitor monitored(const std::vector<double>& residual_of_block) {
   NoiseMonitor monitor;
   double time = 0.0;
@@ -136,6 +149,30 @@ TEST(NoiseMonitor, JudgesTheLastStepsOfARunToo) {
   for (int i = 0; i < 70; ++i) monitor.add({0.01 * i, 0.01, 0.1, i < 50 ? 0.01 : 0.5});
   monitor.finish();
   EXPECT_THAT(monitor.verdict(), StartsWith("noisy: "));
+}
+
+/// Blocks with a residual and a chatter each.
+NoiseMonitor watched(const std::vector<std::pair<double, double>>& blocks) {
+  NoiseMonitor monitor;
+  double time = 0.0;
+  for (const auto& [residual, chatter] : blocks)
+    for (std::size_t i = 0; i < NoiseMonitor::block_steps; ++i)
+      monitor.add({time += 0.01, 0.01, 0.1, residual, chatter});
+  monitor.finish();
+  return monitor;
+}
+
+TEST(NoiseMonitor, ASmoothVelocityIsSoundWhateverItsResidual) {
+  const auto monitor = watched({{0.8, 0.5}, {0.3, 1e-6}, {0.25, 2e-5}});
+  EXPECT_EQ(monitor.verdict(), "sound");
+  EXPECT_EQ(monitor.largest_median(), 2e-5);
+  EXPECT_EQ(monitor.largest_residual_median(), 0.3);
+}
+
+TEST(NoiseMonitor, AVelocityThatChattersIsNoisyWhateverItsResidual) {
+  const auto monitor = watched({{0.02, 1e-4}, {0.02, 1e-4}, {0.02, 0.4}, {0.02, 1e-4}});
+  EXPECT_THAT(monitor.verdict(), StartsWith("noisy: the chatter of the velocity passes 0.05"));
+  EXPECT_THAT(monitor.verdict(), HasSubstr("in 33 % of the run, between 1.01 and 1.50 s, and reaches 0.4"));
 }
 
 TEST(NoiseMonitor, VouchesForNothingItHasNotSeen) {

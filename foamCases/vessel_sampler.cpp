@@ -18,8 +18,8 @@ constexpr double volume_bound = 0.1;  // relative; a bounded phase fraction keep
 }  // namespace
 
 VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
-                             bool shear_rates)
-    : Sampler(scene, std::move(fields), writer), gauge_(scene), shear_rates_(shear_rates) {
+                             bool plug_in)
+    : Sampler(scene, std::move(fields), writer, plug_in), gauge_(scene) {
   std::vector<std::string> columns{"time_s"};
   const auto add = [&](std::initializer_list<std::string> more) { columns.insert(columns.end(), more); };
   if (is_funnel()) {
@@ -28,15 +28,17 @@ VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs
     add({"front_mm", "front_mass_995_mm", "end_height_mm", "start_height_mm"});
   }
   add({"volume_m3", "kinetic_energy_J", "potential_energy_J"});
-  if (shear_rates_) add({"shear_rate_p99_1_s"});
-  add({"base_shear_rate_p99_1_s", "initial_residual_U", "courant_max", "time_step_s", "volume_error"});
+  if (plug_in) add({"shear_rate_p99_1_s"});
+  add({"base_shear_rate_p99_1_s"});
+  name_steps(columns);
+  add({"volume_error"});
   if (thixotropic()) add({"flocculation_mean"});
   writer.history_columns(columns);
 }
 
 void VesselSampler::sample(double time, const ReadField& read) {
   VesselFields fields{read("alpha.concrete", 1), read("U", 3), {}};
-  if (shear_rates_ && time > 0.0) fields.shear_rate = read("shearRate", 1);
+  if (plug_in() && time > 0.0) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) flocculation_ = gauge_.mean_over_concrete(fields.fraction, flocculation(time, read));
   now_ = gauge_.measure(fields);
   time_ = time;
@@ -53,7 +55,6 @@ double VesselSampler::volume_error() const { return is_funnel() ? 0.0 : now_.vol
 double VesselSampler::shear_rate() const { return std::max(now_.shear_rate_p99, now_.base_shear_rate_p99); }
 
 void VesselSampler::write_history(double time) {
-  const SolverStep steps = since_last_row(time);
   std::vector<double> row{time};
   const auto add = [&](std::initializer_list<double> more) { row.insert(row.end(), more); };
   if (is_funnel()) {
@@ -62,8 +63,10 @@ void VesselSampler::write_history(double time) {
     add({1e3 * now_.front, 1e3 * now_.front_mass_995, 1e3 * now_.end_height, 1e3 * now_.start_height});
   }
   add({now_.volume, now_.kinetic_energy, now_.potential_energy});
-  if (shear_rates_) add({now_.shear_rate_p99});
-  add({now_.base_shear_rate_p99, steps.initial_residual_u, steps.courant, steps.time_step, volume_error()});
+  if (plug_in()) add({now_.shear_rate_p99});
+  add({now_.base_shear_rate_p99});
+  add_steps(time, row);
+  add({volume_error()});
   if (thixotropic()) add({flocculation_});
   writer().history(row);
 }

@@ -9,7 +9,7 @@ namespace flowrest::foam {
 class VesselSampler : public Sampler {
  public:
   /// `shear_rates`: whether the case writes them, as it does with the plug-in.
-  VesselSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool shear_rates);
+  VesselSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   std::size_t cells() const override { return gauge_.cells(); }
   std::string progress() const override;
@@ -26,7 +26,6 @@ class VesselSampler : public Sampler {
   /// By how much the volume has changed since the start where nothing may leave; of a funnel 0.
   double volume_error() const;
   VesselGauge gauge_;
-  bool shear_rates_;
   VesselGauges now_;
   double time_ = 0.0, first_volume_ = 0.0, largest_volume_error_ = 0.0, flocculation_ = 0.0;
 };

@@ -63,6 +63,15 @@ double mesh_cells(const Scene& scene) {
   return 0.0;
 }
 
+/// Steps of an OpenFOAM run, the few of the fall that the Courant number shortens aside.
+double foam_steps(const Scene& scene) {
+  const double first = largest_foam_step(scene), most = grown_foam_step(scene), end = scene.time.end;
+  const double grows = first / foam_step_of_time, grown = most / foam_step_of_time;
+  if (most <= first || end <= grows) return end / first;
+  return grows / first + std::log(std::min(end, grown) / grows) / foam_step_of_time +
+         std::max(end - grown, 0.0) / most;
+}
+
 }  // namespace
 
 Cost mpm_cost(const Scene& scene) {
@@ -80,8 +89,8 @@ Cost mpm_cost(const Scene& scene) {
 FoamEstimate estimate_foam(const Scene& scene) {
   FoamEstimate estimate;
   estimate.cells = mesh_cells(scene);
-  estimate.step = largest_foam_step(scene);
-  estimate.steps = std::max(1.0, std::ceil(scene.time.end / estimate.step));
+  estimate.step = grown_foam_step(scene);
+  estimate.steps = std::max(1.0, std::ceil(foam_steps(scene)));
   estimate.cost.memory = bytes_of_interfoam + bytes_per_mesh_cell * estimate.cells;
   estimate.cost.cpu_seconds =
       scene.foam.outer_correctors * estimate.cells * estimate.steps / cell_steps_per_cpu_second;

@@ -200,6 +200,7 @@ struct Foam {
   double cell = 0.0;                      ///< m
   double max_courant = 0.25;              ///< bound on the Courant number of flow and interface
   std::optional<double> max_time_step;    ///< s; default cell^2 density / plastic_viscosity
+  double step_growth = 16.0;              ///< by which a slump's step may outgrow its bound once it is slow
   double air_density = 1.0;               ///< kg/m3
   double air_kinematic_viscosity = 1e-2;  ///< m2/s, tames air jets at no cost in spread
   double wedge_angle = 5.0;               ///< degrees, the whole wedge

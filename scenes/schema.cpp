@@ -269,6 +269,10 @@ std::vector<Key> foam_keys() {
              "bound on the step")
           .otherwise("cell^2 density / plastic_viscosity; elasto-viscoplastic: 1.5 cells at the speed of "
                      "shear waves"),
+      number("foam.step_growth", "", from(1.0, 1e3), AT(draft.scene.foam.step_growth),
+             "factor by which a slump's step may outgrow its bound, as a part of the time passed (plug-in, "
+             "without "
+             "foam.max_time_step); 1: never"),
       number("foam.air_density", "kg/m3", above(0.0, 1e6), AT(draft.scene.foam.air_density),
              "density of the air"),
       number("foam.air_kinematic_viscosity", "m2/s", above(0.0, 1e6),

@@ -151,4 +151,13 @@ double largest_foam_step(const Scene& scene) {
   return step;
 }
 
+double grown_foam_step(const Scene& scene) {
+  constexpr double of_sample = 0.4;
+  const double step = largest_foam_step(scene);
+  if (scene.kind != Kind::slump || scene.foam.max_time_step || scene.foam.laws == FoamLaws::built_in)
+    return step;
+  const double interval = std::min(scene.output.history_interval, scene.output.profile_interval);
+  return std::max(step, std::min(scene.foam.step_growth * step, of_sample * interval));
+}
+
 }  // namespace flowrest::scenes

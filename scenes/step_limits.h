@@ -23,6 +23,15 @@ StepLimits step_limits(const Scene&);
 /// answer. At most the time between two samples. s
 double largest_foam_step(const Scene&);
 
+/// The part of the time passed to which a slump's step may grow beyond largest_foam_step. What it leaves
+/// undone is of its own size: the speed of a slump that slows falls as a power of the time.
+inline constexpr double foam_step_of_time = 0.004;
+
+/// What that step may grow to at most: foam.step_growth times largest_foam_step, and two fifths of the time
+/// between two samples; where foam.max_time_step is given, with OpenFOAM's own laws and for all else than
+/// slumps largest_foam_step. s
+double grown_foam_step(const Scene&);
+
 /// Largest pressure at rest: density gravity height of a slump's cone, none in a duct. Pa
 double pressure_at_rest(const Scene&);
 

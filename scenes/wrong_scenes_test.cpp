@@ -85,7 +85,7 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:3:9: walls must be a table, not an integer; allowed keys: base"},
     {"SectionThatIsAList", slump_text, "[foam]", "[[foam]]",
      "wrong.toml:37:1: foam must be a table, not an array; allowed keys: cell, max_courant, max_time_step, "
-     "air_density, air_kinematic_viscosity, wedge_angle"},
+     "step_growth, air_density, air_kinematic_viscosity, wedge_angle"},
     {"NumberGivenAsString", slump_text, "density = 2300.0", "density = \"2300\"",
      "wrong.toml:13:11: material.density must be a number, not a string"},
     {"NumberGivenAsBoolean", slump_text, "density = 2300.0", "density = true",
