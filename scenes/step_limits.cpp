@@ -58,6 +58,13 @@ double largest_courant_number(double poisson_ratio) {
 
 double StepLimits::largest() const { return std::min(largest_cfl * acoustic, viscous); }
 
+double free_fall_speed(const Scene& scene) {
+  if (scene.kind == Kind::duct) return 0.0;
+  double drop = scene.body_height();
+  if (scene.kind == Kind::v_funnel) drop += scene.v_funnel().fall_height;
+  return std::sqrt(2.0 * scene.forces.gravity * drop);
+}
+
 double pressure_at_rest(const Scene& scene) {
   if (scene.kind == Kind::duct) return 0.0;
   return scene.material.density * scene.forces.gravity * scene.body_height();

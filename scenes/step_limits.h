@@ -32,6 +32,9 @@ inline constexpr double foam_step_of_time = 0.004;
 /// slumps largest_foam_step. s
 double grown_foam_step(const Scene&);
 
+/// Speed of a fall from the body's height, and a funnel's above what it falls on; none in a duct. m/s
+double free_fall_speed(const Scene&);
+
 /// Largest pressure at rest: density gravity height of a slump's cone, none in a duct. Pa
 double pressure_at_rest(const Scene&);
 

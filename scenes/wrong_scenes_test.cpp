@@ -367,11 +367,16 @@ const Wrong wrong_scenes[] = {
     {"TwoModuli", slump_text, "youngs_modulus = 1.0e5", "youngs_modulus = 1.0e5\nbulk_modulus = 1e5",
      "wrong.toml:17:16: material.bulk_modulus and material.youngs_modulus are both given; allowed: one of "
      "them, the other follows from the Poisson ratio"},
-    {"MaterialCrushedByItsWeight", slump_text, "youngs_modulus = 1.0e5", "youngs_modulus = 1",
-     "wrong.toml:16:18: the material is so soft that its own weight presses it to 21 % of its volume; "
-     "allowed: moduli that keep at least 50 %"},
-    {"SoftBulkCrushedByItsWeight", slump_text, "youngs_modulus = 1.0e5", "bulk_modulus = 1",
-     "wrong.toml:16:16: the material is so soft that its own weight presses it to 21 % of its volume"},
+    {"MaterialCrushedByItsFall", slump_text, "youngs_modulus = 1.0e5", "youngs_modulus = 1",
+     "wrong.toml:16:18: the material is so soft that a fall from its own height ends at 2.43 m/s, faster "
+     "than "
+     "sound in it (0.0242 m/s): it would be crushed; allowed: moduli at least 1.01e+04 times as large, or "
+     "less "
+     "gravity"},
+    {"SoftBulkCrushedByItsFall", slump_text, "youngs_modulus = 1.0e5", "bulk_modulus = 1",
+     "wrong.toml:16:16: the material is so soft that a fall from its own height ends at 2.43 m/s"},
+    {"AHundredTimesTheGravity", slump_text, "gravity = 9.81", "gravity = 981",
+     "wrong.toml:16:18: the material is so soft that a fall from its own height ends at 24.3 m/s"},
     {"ThixotropyWithoutYieldStress", thixotropic_text, "yield_stress = 50", "yield_stress = 0",
      "wrong.toml:14:16: the yield stress is 0, but flocculation grows at flocculation_rate / yield_stress; "
      "allowed: a yield stress greater than 0 in scenes"},

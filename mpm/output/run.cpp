@@ -172,17 +172,11 @@ class MpmRun {
     state_.time = step >= target - state_.time ? target : state_.time + step;
     if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
     const double sound = scene_.material.longitudinal_speed();
-    if (result.largest_speed > 2.0 * sound + free_fall_speed())
+    if (result.largest_speed > 2.0 * sound + scenes::free_fall_speed(scene_))
       throw runs::NumericsError(fmt::format(
           "a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
           "the step or the material is unstable",
           result.largest_speed, sound));
-  }
-
-  double free_fall_speed() const {
-    double drop = scene_.kind == scenes::Kind::duct ? 0.0 : scene_.body_height();
-    if (scene_.kind == scenes::Kind::v_funnel) drop += scene_.v_funnel().fall_height;
-    return std::sqrt(2.0 * scene_.forces.gravity * drop);
   }
 
   double total_energy() const {
