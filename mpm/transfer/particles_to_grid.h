@@ -25,9 +25,10 @@ struct Source<T, Dim, 0, Values> {
 template <class Shape>
 constexpr int term_sides = Shape::nodes - 1;
 
-/// Adds an axis' term for the node on a side.
-template <int Sides, class R>
-FLOWREST_INLINE void add_term(R& sum, const R (&term)[2], int side) {
+/// Adds an axis' term for the node on a side. The types are given, not deduced: a deduced record would lose
+/// its alignment, that of a number, and be taken to lie where a whole register may be loaded.
+template <class T, int Sides, int Values>
+FLOWREST_INLINE void add_term(Record<T, Values>& sum, const Record<T, Values> (&term)[2], int side) {
   if (Sides == 2) {
     sum += term[side];
   } else if (side == 1) {
@@ -78,7 +79,7 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const
       if constexpr (!plain) {
         R across[2];
         for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(s.term[0][side]);
-        add_term<Sides>(here, across, side_of<Shape>(I));
+        add_term<T, Sides, Values>(here, across, side_of<Shape>(I));
       }
 #pragma GCC unroll 2
       for (int side = 0; side < Sides; ++side) {
@@ -99,7 +100,7 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const
         const T wj = w.weight[1][side_of<Shape>(j)][q];
         line *= wj;
         if constexpr (Sides > 0) {
-          add_term<Sides>(line, row, side_of<Shape>(j));
+          add_term<T, Sides, Values>(line, row, side_of<Shape>(j));
           for (int side = 0; side < Sides; ++side) line_along[side] *= wj;
         }
       }
@@ -109,7 +110,7 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const
           sum[j][k] += line;
         } else {
           sum[j][k] += w.weight[last][side_of<Shape>(k)][q] * line;
-          if constexpr (Sides > 0) add_term<Sides>(sum[j][k], line_along, side_of<Shape>(k));
+          if constexpr (Sides > 0) add_term<T, Sides, Values>(sum[j][k], line_along, side_of<Shape>(k));
         }
       }
     }
