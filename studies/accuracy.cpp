@@ -234,7 +234,8 @@ Choice choose(const std::vector<Knowledge>& all, const scenes::Scene& scene, dou
         "within {} ({} off a reference that is itself uncertain by {})",
         scene.path.string(), percent(accuracy), best->knowledge->study, best->point->cell,
         // One digit more than elsewhere: what was asked for may be missed by a hair.
-        fmt::format("{:.3g} %", 100.0 * best->error()), percent(best->point->error), percent(best->knowledge->uncertainty)));
+        fmt::format("{:.3g} %", 100.0 * best->error()), percent(best->point->error),
+        percent(best->knowledge->uncertainty)));
   const Knowledge& k = *cheapest->knowledge;
   const KnownPoint& p = *cheapest->point;
   Choice choice;
