@@ -17,8 +17,8 @@ struct StepLimits {
 
 StepLimits step_limits(const Scene&);
 
-/// The largest step of an OpenFOAM run: foam.max_time_step; else, for a fluid, cell^2 density /
-/// plastic_viscosity, above which creeping material turns to noise, and for the elasto-viscoplastic law one
+/// The largest step of an OpenFOAM run, before a slump's grows: foam.max_time_step; else, for a fluid, cell^2 density /
+/// plastic_viscosity, above which creeping material turns to noise with few pressure correctors, and for the elasto-viscoplastic law one
 /// and a half cells at the speed of its shear waves, which are implicit: what it bounds is how late they
 /// answer. At most the time between two samples. s
 double largest_foam_step(const Scene&);
