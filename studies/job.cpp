@@ -37,22 +37,39 @@ std::string last_words(const fs::path& log) {
   return last.starts_with(prefix) ? last.substr(prefix.size()) : last;
 }
 
+/// The settings that a run of this solver hangs on: neither what its scene is called, nor which runs it
+/// names, nor the other solver's settings, nor what only another law reads.
+Json bearing_on(const std::string& solver, Json settings) {
+  if (!settings.is_object()) return settings;
+  for (const char* name : {"title", "runs", solver == "mpm" ? "foam" : "mpm"}) settings.erase(name);
+  if (settings.contains("foam") && settings.value("kind", "") != "slump")
+    settings["foam"].erase("step_growth");
+  if (settings.contains("material")) {
+    Json& material = settings["material"];
+    const std::string model = material.value("model", "");
+    for (const auto& [law, key] :
+         {std::pair{"papanastasiou", "regularisation_time"}, {"bi-viscous", "critical_shear_rate"}})
+      if (model != law) material.erase(key);
+  }
+  return settings;
+}
+
 /// Whether a run was made with the settings that were asked for. What a scene leaves to OpenFOAM, the rows at
 /// the base (0) and the time in which air rises, its run says.
-bool made_as_asked(Json made, const Json& asked) {
+bool made_as_asked(const std::string& solver, Json made, const Json& asked) {
   const auto foam = asked.find("foam");
   if (foam != asked.end() && made.contains("foam")) {
     if (foam->value("base_rows", 0) == 0) made["foam"]["base_rows"] = 0;
     if (!foam->contains("air_rise_time")) made["foam"].erase("air_rise_time");
   }
-  return made == asked;
+  return bearing_on(solver, std::move(made)) == bearing_on(solver, asked);
 }
 
 /// How the run directory says that this run ended; missing where it says anything else.
-Outcome ending_in(const fs::path& directory, const Json& settings) {
+Outcome ending_in(const fs::path& directory, const std::string& solver, const Json& settings) {
   try {
     const runs::Run run = runs::read_run(directory);
-    if (!made_as_asked(run.info.value("settings", Json()), settings)) return {};
+    if (!made_as_asked(solver, run.info.value("settings", Json()), settings)) return {};
     const std::string reason = run.info.value("reason", "");
     switch (run.status()) {
       case runs::Status::at_rest:
@@ -101,7 +118,7 @@ void mark(const Folder& folder, const Job& job, const Outcome& outcome, double w
 /// Whether the run directory holds a part of this run that can be gone on with.
 bool has_begun(const Folder& folder, const Job& job) {
   const Json info = read_json(folder.run(job.id) / "run.json");
-  return info.is_object() && made_as_asked(info.value("settings", Json()), job.settings) &&
+  return info.is_object() && made_as_asked(job.solver, info.value("settings", Json()), job.settings) &&
          info.value("status", "") != to_string(runs::Status::failed);
 }
 
@@ -120,7 +137,8 @@ std::vector<std::string> arguments_of(const Folder& folder, const Job& job, bool
 void clear_unusable(const Folder& folder, const Job& job) {
   const fs::path run = folder.run(job.id);
   const Json info = read_json(run / "run.json");
-  if (fs::exists(run) && (!info.is_object() || !made_as_asked(info.value("settings", Json()), job.settings)))
+  if (fs::exists(run) &&
+      (!info.is_object() || !made_as_asked(job.solver, info.value("settings", Json()), job.settings)))
     fs::remove_all(run);
 }
 
@@ -131,7 +149,7 @@ Outcome outcome_of_end(const Folder& folder, const Job& job, const runs::Process
     return {};
   if (end.signal != 0) return {Ending::crashed, end.how()};
   if (end.exit_code == interrupted) return {};
-  const Outcome said = ending_in(folder.run(job.id), job.settings);
+  const Outcome said = ending_in(folder.run(job.id), job.solver, job.settings);
   if ((end.exit_code == 0 || end.exit_code == failed) && said.ending != Ending::missing) return said;
   const std::string why = last_words(folder.log(job.id));
   if (end.exit_code == refused) return {Ending::refused, why};
@@ -179,17 +197,19 @@ Outcome outcome_of(const Folder& folder, const Point& point) {
   if (!marked.is_object()) return {};
   const Json settings = Json::parse(scenes::resolved_json(*point.scene));
   const std::string ending = marked.value("ending", ""), reason = marked.value("reason", "");
-  if (marked.value("settings", Json()) != settings) return {};
+  const std::string solver = to_string(point.solver);
+  if (!made_as_asked(solver, marked.value("settings", Json()), settings)) return {};
   for (const Ending without_data : {Ending::refused, Ending::crashed, Ending::too_long})
     if (ending == to_string(without_data)) return {without_data, reason};
-  return ending_in(folder.run(point.id), settings);
+  return ending_in(folder.run(point.id), solver, settings);
 }
 
 int run_job(const fs::path& root, const std::string& id) {
   const Folder folder{root};
   const Job job = read_job(folder, id);
   const auto begin = Clock::now();
-  if (const Outcome there = ending_in(folder.run(id), job.settings); there.ending == Ending::finished) {
+  if (const Outcome there = ending_in(folder.run(id), job.solver, job.settings);
+      there.ending == Ending::finished) {
     mark(folder, job, there, 0.0);  // it ended, but whoever waited for it was killed before it could say so
     return 0;
   }

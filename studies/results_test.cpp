@@ -121,7 +121,39 @@ TEST_F(StudyResults, OnlyWhatEndedAndSaysSoItselfCounts) {
   for (std::size_t i = 1; i < verdicts.size(); ++i) EXPECT_EQ(verdicts[i], Verdict::missing) << i;
 }
 
+TEST_F(StudyResults, WhatDoesNotBearOnARunMayDiffer) {
+  const auto differs = [&](std::size_t i, auto change) {
+    Point other = points[i];
+    change(*other.scene);
+    write_run(other, 500.0, 1.0);
+    mark(points[i], "finished");
+  };
+  differs(0, [](scenes::Scene& s) { s.foam.max_courant = 0.1; });  // material points know no Courant number
+  differs(1, [](scenes::Scene& s) { s.material.regularisation_time = 3.0; });  // nor a solid a fluid's
+  differs(2, [](scenes::Scene& s) { s.title = "renamed"; });
+  differs(3, [](scenes::Scene& s) { s.mpm.cfl *= 0.5; });
+  for (const std::size_t i : {4u, 5u}) points[i].scene->material.model = scenes::Model::papanastasiou;
+  differs(4, [](scenes::Scene& s) { s.material.regularisation_time = 3.0; });
+  differs(5, [](scenes::Scene& s) { s.material.critical_shear_rate = 3.0; });
+  const auto results = collect(folder, study, points, "").results;
+  for (const std::size_t i : {0u, 1u, 2u, 5u}) EXPECT_EQ(results[i].verdict, Verdict::sound) << i;
+  for (const std::size_t i : {3u, 4u}) EXPECT_EQ(results[i].verdict, Verdict::missing) << i;
+}
+
+TEST_F(StudyResults, OnlyASlumpsStepGrows) {
+  for (const std::size_t i : {0u, 1u}) {
+    points[i].solver = Solver::foam;
+    if (i == 0) points[i].scene = scenes::load_scene("poiseuille-10", {});
+    Point other = points[i];
+    other.scene->foam.step_growth = 1.0;
+    write_run(other, 500.0, 1.0);
+    mark(points[i], "finished");
+    EXPECT_EQ(outcome_of(folder, points[i]).ending, i == 0 ? Ending::finished : Ending::missing);
+  }
+}
+
 TEST_F(StudyResults, WhatASceneLeavesToOpenFoamMayBeFilledIn) {
+  for (const std::size_t i : {0u, 1u}) points[i].solver = Solver::foam;
   Point filled = points[0];
   filled.scene->foam.base_rows = 4;
   filled.scene->foam.air_rise_time = 0.1;

@@ -63,6 +63,27 @@ TEST_F(PaperScenes, ALiftedMouldLeavesItsConcreteToSpreadAsItRested) {
   }
 }
 
+TEST_F(PaperScenes, FlocsGrowAgainInTheSolidAndGoOnBreakingInTheFluid) {
+  // Yu et al., Fig. 15: both break flocs alike while they flow; at rest the solid's grow by A_thix / tau0.
+  const std::vector<std::string> settings = {"mpm.cell=0.015", "time.end=3", "time.stop_at_rest=false"};
+  const auto solid = made("mix-a-slump-sf600", settings);
+  const auto fluid = run_and_read(
+      scenes::load_scene("mix-a-slump-sf600", {coarse(settings), scenes::Model::papanastasiou}), "fluid");
+  const auto at = [](const runs::Run& run, double time) {
+    const auto& times = run.history.at("time_s");
+    const auto i = std::lower_bound(times.begin(), times.end(), time - 1e-9) - times.begin();
+    return run.history.at("flocculation_mean")[static_cast<std::size_t>(i)];
+  };
+  std::printf("    lambda at 0.5, 1 and 3 s: solid %.4f, %.4f, %.4f; fluid %.4f, %.4f, %.4f\n",
+              at(solid, 0.5), at(solid, 1.0), last(solid, "flocculation_mean"), at(fluid, 0.5),
+              at(fluid, 1.0), last(fluid, "flocculation_mean"));
+  EXPECT_LT(at(solid, 0.5), 0.75 * at(solid, 0.0));
+  EXPECT_NEAR(at(fluid, 0.5), at(solid, 0.5), 2e-3 * at(solid, 0.5));
+  const double growth = (last(solid, "flocculation_mean") - at(solid, 1.0)) / 2.0;
+  EXPECT_NEAR(growth, 0.39 / 92.0, 0.02 * 0.39 / 92.0);
+  EXPECT_LT(last(fluid, "flocculation_mean"), at(fluid, 1.0));
+}
+
 TEST_F(PaperScenes, AnLBoxRunsUnderItsFrontWallAndTheStifferMixStopsShorter) {
   // Without side walls to hold it, the softer mix surges up the end wall and stays there.
   // Reference: the plane section without bars, 20 mm cells.

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <utility>
 
+#include "compare/exact/creep.h"
 #include "compare/exact/solutions.h"
 #include "runs/run_directory.h"
 #include "scenes/text.h"
@@ -129,20 +131,40 @@ std::vector<PaperItem> read_paper_items() {
 }
 
 std::vector<Published> exact_numbers(const std::string& name, const scenes::Scene& scene) {
-  if (scene.kind != scenes::Kind::duct || scene.forces.body_force.size() != 1) return {};
-  const compare::exact::DuctFlow flow{
-      {scene.material.density, scene.material.yield_stress, scene.material.plastic_viscosity},
-      scene.duct().height,
-      scene.forces.body_force.front().second};
-  constexpr double tolerance = 0.01;
-  Published p;
-  p.scene = name;
-  p.quantity = "plug_velocity_m_s";
-  p.paper = flow.plug_velocity();
-  p.allowed = tolerance * *p.paper;
-  p.mark = Mark::exact;
-  p.source = "closed form";
-  return {p};
+  if (scene.kind != scenes::Kind::duct || scene.forces.body_force.empty()) return {};
+  const scenes::Material& material = scene.material;
+  const double height = scene.duct().height, force = scene.forces.body_force.back().second;
+  const bool stepped = scene.forces.body_force.size() > 1;
+  std::set<scenes::Model> models(scene.runs.mpm.begin(), scene.runs.mpm.end());
+  models.insert(scene.runs.foam.begin(), scene.runs.foam.end());
+  std::vector<Published> numbers;
+  for (const scenes::Model model : models) {
+    constexpr double tolerance = 0.01;
+    Published p;
+    p.scene = name;
+    p.quantity = "plug_velocity_m_s";
+    p.mark = Mark::exact;
+    p.source = "closed form";
+    p.model = model;
+    if (model == scenes::Model::papanastasiou || model == scenes::Model::bi_viscous) {
+      const bool smooth = model == scenes::Model::papanastasiou;
+      const auto time = smooth ? material.regularisation_time : material.critical_shear_rate;
+      if (!time) continue;
+      using Fluid = compare::exact::RegularisedFluid;
+      p.paper = compare::exact::duct_creep(
+          {smooth ? Fluid::Law::papanastasiou : Fluid::Law::bi_viscous, material.yield_stress,
+           material.plastic_viscosity, smooth ? *time : 1.0 / *time},
+          height, force);
+    } else {
+      if (stepped) continue;  // what stops has no velocity to be held against
+      const compare::exact::DuctFlow flow{
+          {material.density, material.yield_stress, material.plastic_viscosity}, height, force};
+      p.paper = flow.plug_velocity();
+    }
+    p.allowed = tolerance * *p.paper;
+    numbers.push_back(p);
+  }
+  return numbers;
 }
 
 }  // namespace flowrest::studies::validation

@@ -40,7 +40,7 @@ struct PaperItem {
 std::vector<Published> read_published();
 std::vector<PaperItem> read_paper_items();
 
-/// What is exactly known of a scene without being published.
+/// What is exactly known of a scene without being published, law by law: a regularised fluid has its own.
 std::vector<Published> exact_numbers(const std::string& name, const scenes::Scene&);
 
 }  // namespace flowrest::studies::validation

@@ -340,6 +340,26 @@ TEST_F(ValidationTest, WholeRunsOfTheSameSettingsAndVersionAreKept) {
   EXPECT_EQ(prepare(folder, study, points_of(plan(options))), 0u);
 }
 
+TEST(ExactNumbers, EveryLawIsHeldAgainstItsOwn) {
+  const auto of = [](const std::string& name) {
+    std::map<scenes::Model, double> found;
+    for (const Published& p : exact_numbers(name, scenes::load_scene(name, {})))
+      found[p.model.value()] = p.target().value();
+    return found;
+  };
+  // 2000 N/m3 between plates 0.5 m apart: F (H/2 - tau0/F)^2 / (2 eta), the fluid sheared in its plug as
+  // well.
+  const auto steady = of("poiseuille-200");
+  EXPECT_NEAR(steady.at(solid_law), 0.75, 1e-12);
+  EXPECT_GT(steady.at(fluid_law), 0.755);
+  EXPECT_LT(steady.at(fluid_law), 0.775);
+  // Stepped down below yield, only the fluid has a velocity (the README of foamCases has it, too).
+  const auto stepped = of("poiseuille-step-down");
+  EXPECT_EQ(stepped.count(solid_law), 0u);
+  EXPECT_NEAR(stepped.at(fluid_law), 0.01685, 1e-4);
+  EXPECT_TRUE(of("mix-a-slump-sf0").empty());
+}
+
 TEST_F(ValidationTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   options.scenes = {"mix-a-slump-sf0", "no-such-scene"};
   EXPECT_THROW(plan(options), scenes::SceneError);
