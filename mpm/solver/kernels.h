@@ -35,7 +35,8 @@ struct StepParameters {
   T density{};          ///< kg/m3, initial
   T acceleration[3]{};  ///< m/s2, of gravity and body force
   T keep{};             ///< share of the particle's own velocity (and APIC's affine part) kept over the step
-  T density_correction{};       ///< share of an overlap of particles taken back per unit strain
+  T density_correction{};  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit
+                           ///< strain
   bool filling_matters = true;  ///< there are free surfaces, and B-bar is by average
   FlowParameters<T> flow;
   EquationOfState<T> state;

@@ -27,7 +27,8 @@ struct SolverSettings {
   double cell = 0.0;                  ///< m
   double density = 0.0;               ///< kg/m3
   double flip_relaxation_time = 0.0;  ///< s; infinite for pure FLIP
-  double density_correction = 0.0;    ///< share of an overlap of particles taken back per unit strain
+  double density_correction =
+      0.0;  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit strain
   bool free_surface = true;
   FlowParameters<double> flow;
   EquationOfState<double> state;

@@ -2,6 +2,7 @@
 
 #include "mpm/boundary/keep_out.h"
 #include "mpm/material/stress_update.h"
+#include "mpm/transfer/filling.h"
 #include "mpm/transfer/gather.h"
 #include "mpm/transfer/nodes.h"
 #include "mpm/transfer/particles_to_grid.h"
@@ -51,33 +52,6 @@ void refer_to_midpoint(const StepParameters<T>& step, const Strain<T, Dim>& s, i
         s.gradient[i][j][q] = l.g[i][j] - half * square;
       }
     if constexpr (Axisymmetric) s.hoop[q] = l.hoop - half * l.hoop * l.hoop;
-  }
-}
-
-/// Filling below which a particle belongs to a drop. At a plane surface it is a half, at an edge a quarter.
-constexpr double drop_filling = 0.2;
-
-/// What a particle makes of its surroundings' filling.
-///
-/// Less than a body has: a drop of a few particles. What it pushes are nodes that carry nothing else, and
-/// near a cell's face one of them weighs next to nothing: over a step that is long enough for a body, its
-/// pressure swings ever wider until it leaps off the wall or the grid. So the less there is around it, the
-/// less of the strain it feels is its own; it flies, lands and is pushed as before.
-///
-/// More than full: particles overlap. A sum over a cell's particles is not an integral over the cell: where
-/// material is sheared for long, particles drift together while the divergence they see is zero, and the body
-/// sinks into itself unnoticed by the volume they carry. A particle whose surroundings are fuller than full
-/// is told that it is compressed, at a rate in proportion to the shearing that drives the drift, so that what
-/// is at rest stays so; its pressure then makes room. Gaps are left alone: under a free surface they are
-/// there by right, and closing them pulls a thin front back.
-template <class T, int Dim>
-void heed_filling(const StepParameters<T>& step, const Strain<T, Dim>& s, const T* filling, int count) {
-#pragma omp simd
-  for (int q = 0; q < count; ++q) {
-    const T share = minimum(filling[q] * T(1.0 / drop_filling), T(1));
-    const T overlap = maximum(filling[q] - T(1), T(0));
-    s.dilatation[q] = s.dilatation[q] * share * share * (Dim == 3 ? share : T(1)) -
-                      step.density_correction * s.rate[q] * overlap;
   }
 }
 
@@ -132,7 +106,8 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     volume[q] = mass[q] * s.ratio[q];
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
-  if (filling) heed_filling<T, Dim>(step, s, filling, count);
+  if (filling)
+    heed_filling<T, Dim>(step, s, filling, covered_beside_walls<T, Dim, Shape>(step, tile, arena), count);
   if (planes) {
     give_dilatation<T, Dim>(tile, x, volume, s.dilatation, planes);
   } else {

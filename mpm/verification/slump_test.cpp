@@ -79,7 +79,7 @@ scenes::Scene coarse_slump(const std::vector<std::string>& more = {}) {
 }  // namespace
 
 // Produced by the run that ComesToRestWhereItDidWhenThisWasWritten makes.
-constexpr double stored_spread_mm = 574.05, stored_height_mm = 41.22, stored_rest_s = 34.00;
+constexpr double stored_spread_mm = 564.05, stored_height_mm = 41.98, stored_rest_s = 30.85;
 
 class Slump : public RunTest {};
 
@@ -97,9 +97,8 @@ TEST_F(Slump, ComesToRestWhereItDidWhenThisWasWritten) {
 }
 
 TEST_F(Slump, StopsWhereItDoesWhateverTheStep) {
-  // Measured at 10 mm: 561.8, 563.8, 564.7, 565.3 and 567.0 mm for CFL 0.75, 0.5, 0.3, 0.2 and 0.1, at rest
-  // after 23 to 28 s (plain APIC: 563.1 to 573.2 mm, 30 to 52 s); at 5 mm 568.0 and 570.6 for 0.75 and 0.2;
-  // at 20 mm, two cells over the depth, 556.4 and 562.7 for 0.75 and 0.15.
+  // Measured: 554.2, 554.9 and 555.2 mm for CFL 0.75, 0.2 and 0.15, at rest after 24 s; at 5 mm 550.8 and
+  // 551.2 for 0.75 and 0.2.
   const auto usual = run_and_read(coarse_slump({"mpm.cell=0.01"}), "usual"),
              fine = run_and_read(coarse_slump({"mpm.cell=0.01", "mpm.cfl=0.15"}), "fine");
   const double spread = usual.history.at("spread_mm").back();
@@ -110,7 +109,7 @@ TEST_F(Slump, StopsWhereItDoesWhateverTheStep) {
 }
 
 TEST_F(Slump, InFloatStopsWhereAndWhenItDoesInDouble) {
-  // Measured at 10 mm: 561.85 and 561.84 mm, at rest after 23.4 s in both.
+  // Measured at 10 mm: 554.20 and 554.33 mm, at rest after 23.9 and 24.1 s.
   const auto in_double = run_and_read(coarse_slump());
   const auto in_float = run_and_read(coarse_slump({"mpm.precision=float"}));
   EXPECT_EQ(in_float.info["precision"], "float");
@@ -163,10 +162,44 @@ TEST_F(Slump, MassIsExactAndTheVolumeIsWhatTheEquationOfStateMakesOfIt) {
   EXPECT_NEAR(volume, expected, 1e-3 * at_rest);
 }
 
+TEST_F(Slump, OfANewtonianFluidBecomesTheViscousGravityCurrent) {
+  // r = 0.894 (g V^3 / (3 nu))^(1/8) t^(1/8) (Huppert 1982, axisymmetric, of constant volume), which forgets
+  // how it began. Measured after 10 s: 1.017 and 1.011 of it, on 5 mm cells 1.001 and 1.005; with a gap left
+  // under the front, that is without the density correction, 1.046 and 1.047, on 5 mm cells 1.026 and 1.042.
+  const double volume = 5.497787143782138e-3, kinematic = 50.0 / 2300.0, time = 10.0;
+  const double exact = 2e3 * 0.894 * std::pow(9.81 * std::pow(volume, 3) * time / (3.0 * kinematic), 0.125);
+  const std::vector<std::string> newtonian = {"mpm.cell=0.01", "runs.mpm=['newtonian']",
+                                              "material.model=newtonian", "time.end=10"};
+  for (const std::string scheme : {"quadratic-apic", "linear-flip"}) {
+    const auto of = [&](const std::string& correction, const std::string& name) {
+      std::vector<std::string> set = with(newtonian, {"mpm.scheme=" + scheme});
+      if (!correction.empty()) set.push_back("mpm.density_correction=" + correction);
+      return run_and_read(coarse_slump(set), scheme + name).history.at("spread_mm").back() / exact;
+    };
+    const double usual = of("", ""), gaping = of("0", "-gaping");
+    std::printf("    %s: %.3f of the gravity current's spread, without density correction %.3f\n",
+                scheme.c_str(), usual, gaping);
+    EXPECT_NEAR(usual, 1.0, 0.025);
+    EXPECT_GT(gaping, 1.03) << "the correction is tested on a slump that does not need it";
+  }
+}
+
+TEST_F(Slump, IsTheSameInEitherScheme) {
+  // Measured: 550.7 and 554.2 mm, on 5 mm cells 552.3 and 550.8 (before gaps at the floor were closed 583.9
+  // and 570.3).
+  const double quadratic =
+      run_and_read(coarse_slump({"mpm.cell=0.01"}), "quadratic").history.at("spread_mm").back();
+  const double linear = run_and_read(coarse_slump({"mpm.cell=0.01", "mpm.scheme=linear-flip"}), "linear")
+                            .history.at("spread_mm")
+                            .back();
+  std::printf("    quadratic-apic %.2f mm, linear-flip %.2f mm\n", quadratic, linear);
+  EXPECT_NEAR(linear, quadratic, 0.02 * quadratic);
+}
+
 TEST_F(Slump, OfAPlanarColumnSpreadsWithTheCubeRootOfItsYieldStress) {
-  // Lubrication at rest: X = (9 X0^2 / (8 B))^(1/3), lengths over H0, B = tau0 / (rho g H0). Measured: 0.90
-  // of it at 100 and at 200 Pa: the stress along the plug, which lubrication leaves out, holds the front
-  // back.
+  // Lubrication at rest: X = (9 X0^2 / (8 B))^(1/3), lengths over H0, B = tau0 / (rho g H0). Measured: 0.89
+  // and 0.87 of it at 100 and at 200 Pa: the stress along the plug, which lubrication leaves out, holds the
+  // front back.
   std::map<double, double> share;
   for (const double yield : {100.0, 200.0}) {
     const auto scene =
