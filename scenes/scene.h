@@ -190,8 +190,8 @@ struct Mpm {
   std::optional<BBar> b_bar;                   ///< cell_average in ducts and for `linear-flip`, else smooth
   double flip_relaxation_time = 0.05;          ///< s, of `linear-flip`
   std::optional<double> apic_relaxation_time;  ///< s, of `quadratic-apic`: its transfer acts once over this
-  /// Share of an overlap of particles taken back per unit strain; 1 for `quadratic-apic`, 0.3 for
-  /// `linear-flip`, whose filling is noisier, 0 for `paper` and in ducts.
+  /// Share of an overlap of particles, or of a gap at a no-slip plane wall, taken back per unit strain; 1 for
+  /// `quadratic-apic`, 0.3 for `linear-flip`, whose filling is noisier, 0 for `paper` and in ducts.
   std::optional<double> density_correction;
   bool operator==(const Mpm&) const = default;
 };

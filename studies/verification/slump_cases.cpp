@@ -49,6 +49,35 @@ Case roussel(const Variant& v) {
   return c;
 }
 
+/// A Newtonian slump after 10 s. r = 0.894 (g V^3 / (3 nu))^(1/8) t^(1/8) (Huppert 1982, axisymmetric, of
+/// constant volume), which forgets how it began: the one slump whose spread in time is known.
+Case gravity_current(const Variant& v, const std::string& solver = "mpm") {
+  const double volume = 5.497787143782138e-3, kinematic = 50.0 / density, time = 10.0;
+  const double exact =
+      2e3 * 0.894 * std::pow(gravity * std::pow(volume, 3) * time / (3.0 * kinematic), 0.125);
+  Case c;
+  c.name = "Viscous gravity current";
+  c.variant = v.words;
+  c.against = "Huppert 1982, similarity solution of lubrication, after 10 s";
+  c.norm = "relative error of the spread";
+  c.value_name = "spread";
+  c.value_unit = "mm";
+  c.exact_value = exact;
+  c.grids = {0.020, 0.0125, 0.010};
+  c.largest_error = 0.025;
+  c.quick = v.quick;
+  c.cost = solver == "foam" ? 60.0 : 3.0;
+  c.compute = [=](double cell, const Workplace& place) {
+    std::vector<std::string> set = {"runs.mpm=['newtonian']", "runs.foam=['newtonian']",
+                                    "material.model=newtonian", setting("time.end", time)};
+    set.insert(set.end(), v.set.begin(), v.set.end());
+    set.push_back(setting(solver + ".cell", cell));
+    const double spread = run_scene("roussel-slump", set, solver, place).history.at("spread_mm").back();
+    return Measured{std::abs(spread / exact - 1.0), spread};
+  };
+  return c;
+}
+
 /// Lubrication at rest: X = (9 X0^2 / (8 B))^(1/3), lengths over H0, B = tau0 / (rho g H0). The stress along
 /// the plug, which it leaves out, holds the front back.
 Case planar(const Variant& v) {
@@ -116,13 +145,20 @@ Case cylinder(const Variant& v) {
 std::vector<Case> slump_cases() {
   const std::vector<std::string> linear = {"mpm.scheme=linear-flip"}, single = {"mpm.precision=float"};
   const std::string quadratic = "MPM quadratic-apic, elasto-viscoplastic, ";
-  return {roussel({{}, quadratic + "double", true}),
-          roussel({single, quadratic + "float"}),
-          roussel({linear, "MPM linear-flip, elasto-viscoplastic, double"}),
-          planar({{}, quadratic + "double"}),
-          planar({single, quadratic + "float"}),
-          cylinder({{}, quadratic + "double"}),
-          cylinder({linear, "MPM linear-flip, elasto-viscoplastic, double"})};
+  std::vector<Case> cases = {roussel({{}, quadratic + "double", true}),
+                             roussel({single, quadratic + "float"}),
+                             roussel({linear, "MPM linear-flip, elasto-viscoplastic, double"}),
+                             planar({{}, quadratic + "double"}),
+                             planar({single, quadratic + "float"}),
+                             cylinder({{}, quadratic + "double"}),
+                             cylinder({linear, "MPM linear-flip, elasto-viscoplastic, double"}),
+                             gravity_current({{}, "MPM quadratic-apic, newtonian, double", true}),
+                             gravity_current({single, "MPM quadratic-apic, newtonian, float"}),
+                             gravity_current({linear, "MPM linear-flip, newtonian, double"})};
+#ifdef FLOWREST_HAS_FOAM
+  cases.push_back(gravity_current({{}, "OpenFOAM, newtonian"}, "foam"));
+#endif
+  return cases;
 }
 
 }  // namespace flowrest::studies::verification
