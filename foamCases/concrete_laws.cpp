@@ -68,9 +68,10 @@ std::string mixing_name(FoamMixing mixing) {
 /// What every law of the plug-in is told.
 std::string common_coefficients(const Scene& scene, const std::string& indent) {
   const auto& material = scene.material;
+  const bool yields = material.model != Model::newtonian;
   std::string text = fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s\n",
-                                 indent, material.yield_stress, material.plastic_viscosity);
-  if (scene.thixotropy)
+                                 indent, yields ? material.yield_stress : 0.0, material.plastic_viscosity);
+  if (yields && scene.thixotropy)
     text += fmt::format(
         "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
         "{0}    deflocculationCoefficient   {2};\n{0}    initialFlocculation         {3};\n{0}}}\n",
@@ -85,13 +86,24 @@ std::string common_coefficients(const Scene& scene, const std::string& indent) {
 
 std::string plug_in_viscosity(const Scene& scene) {
   const auto& material = scene.material;
-  const bool papanastasiou = material.model == Model::papanastasiou;
-  return fmt::format(
-      "concreteViscosity\n{{\n    transportModel      {};\n{}    {}    {};  // {}\n}}\n",
-      papanastasiou ? "PapanastasiouBingham" : "biViscousBingham", common_coefficients(scene, "    "),
-      papanastasiou ? "regularisationTime" : "criticalShearRate ",
-      papanastasiou ? material.regularisation_time.value() : material.critical_shear_rate.value(),
-      papanastasiou ? "s" : "1/s");
+  std::string type, own;
+  switch (material.model) {
+    case Model::papanastasiou:
+      type = "PapanastasiouBingham";
+      own = fmt::format("    regularisationTime    {};  // s\n", material.regularisation_time.value());
+      break;
+    case Model::bi_viscous:
+      type = "biViscousBingham";
+      own = fmt::format("    criticalShearRate     {};  // 1/s\n", material.critical_shear_rate.value());
+      break;
+    case Model::newtonian:
+      type = "NewtonianConcrete";
+      break;
+    case Model::elasto_viscoplastic:
+      throw std::logic_error("a stress model, not a viscosity");
+  }
+  return fmt::format("concreteViscosity\n{{\n    transportModel      {};\n{}{}}}\n", type,
+                     common_coefficients(scene, "    "), own);
 }
 
 /// The elasto-viscoplastic law is a stress model; what the mixture is given as viscosity it does not use.
@@ -147,7 +159,7 @@ int pressure_correctors(const Scene& scene, bool plug_in) {
 
 std::string stress_model(const Scene& scene, bool plug_in) {
   const std::string none = "\nconcreteStress\n{\n}\n";
-  if (!plug_in || scene.material.model == Model::newtonian) return built_in_viscosity(scene.material) + none;
+  if (!plug_in) return built_in_viscosity(scene.material) + none;
   if (scene.material.model == Model::elasto_viscoplastic) return plug_in_stress(scene);
   return plug_in_viscosity(scene) + none;
 }

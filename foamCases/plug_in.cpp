@@ -65,8 +65,9 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
         "{}: {}: OpenFOAM has nothing such of its own, but foam.laws is built-in; allowed: plug-in or best",
         scene.path.string(), law(scene)));
   }
-  // It has no Newtonian law, but vessels' shear rates are read off by it.
-  if (scene.material.model == Model::newtonian && !needed && !is_vessel(scene)) return std::nullopt;
+  // Without a surface one viscosity is one viscosity.
+  if (scene.material.model == Model::newtonian && scene.kind == scenes::Kind::duct && !needed)
+    return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)
     throw runs::MissingProgram(fmt::format(

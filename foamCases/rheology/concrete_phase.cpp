@@ -93,13 +93,11 @@ bool ConcretePhase::find_amount_flux(tmp<surfaceScalarField>& result) const {
   return true;
 }
 
-tmp<volTensorField> ConcretePhase::velocity_gradient(StrainRate rule) const {
-  tmp<surfaceVectorField> face_velocity;
-  if (rule == StrainRate::concrete && !alone()) {
-    face_velocity = interpolate(velocity_);
-  } else {
-    face_velocity = fvc::interpolate(velocity_);
-  }
+tmp<surfaceVectorField> ConcretePhase::face_velocity(StrainRate rule) const {
+  return rule == StrainRate::concrete && !alone() ? interpolate(velocity_) : fvc::interpolate(velocity_);
+}
+
+tmp<volTensorField> ConcretePhase::gradient_of(tmp<surfaceVectorField> face_velocity) const {
   // A face that is no cell's neighbour has the boundary's own velocity, whatever the rule.
   auto& boundary = face_velocity.ref().boundaryFieldRef();
   forAll(boundary, patch) {
@@ -108,6 +106,21 @@ tmp<volTensorField> ConcretePhase::velocity_gradient(StrainRate rule) const {
   auto gradient = fv::gaussGrad<vector>::gradf(face_velocity(), "grad(" + velocity_.name() + ")");
   fv::gaussGrad<vector>::correctBoundaryConditions(velocity_, gradient.ref());
   return gradient;
+}
+
+tmp<volTensorField> ConcretePhase::velocity_gradient(StrainRate rule) const {
+  auto velocity = face_velocity(rule);
+  if (rule == StrainRate::concrete && !alone()) {
+    // Cells put their velocity together from faces on either side, and where one has air behind it, it does not
+    // keep the volume: a spreading plug, which thins, would seem to widen upwards as well, and not be sheared.
+    const surfaceVectorField normal(mesh().Sf() / mesh().magSf());
+    velocity.ref() += normal * (flux_ / mesh().magSf() - (normal & velocity()));
+  }
+  return gradient_of(std::move(velocity));
+}
+
+tmp<volTensorField> ConcretePhase::cell_velocity_gradient(StrainRate rule) const {
+  return gradient_of(face_velocity(rule));
 }
 
 tmp<volScalarField> ConcretePhase::shear_rate(const volTensorField& gradient) {

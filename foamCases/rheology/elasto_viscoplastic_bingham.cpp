@@ -268,7 +268,8 @@ tmp<fvVectorMatrix> elastoViscoplasticBingham::minus_divergence(volVectorField& 
   const Response response = respond(gradient());
   const surfaceScalarField weight(face_weight());
   const surfaceScalarField air(fvc::interpolate(phase_.other_viscosity()));
-  const surfaceTensorField face_gradient(phase_.interpolate(gradient()));
+  const surfaceTensorField face_gradient(
+      phase_.interpolate(phase_.cell_velocity_gradient(rules_.strain_rate)()));
   const surfaceSymmTensorField face_stress(phase_.interpolate(response.stress));
   const surfaceScalarField viscosity(
       "stressViscosity", implicitness * weight * fvc::interpolate(response.viscosity) + (1.0 - weight) * air);

@@ -10,6 +10,8 @@ defineTypeNameAndDebug(PapanastasiouBingham, 0);
 addToRunTimeSelectionTable(viscosityModel, PapanastasiouBingham, dictionary);
 defineTypeNameAndDebug(biViscousBingham, 0);
 addToRunTimeSelectionTable(viscosityModel, biViscousBingham, dictionary);
+defineTypeNameAndDebug(NewtonianConcrete, 0);
+addToRunTimeSelectionTable(viscosityModel, NewtonianConcrete, dictionary);
 
 namespace {
 
@@ -28,7 +30,7 @@ RegularisedBingham::RegularisedBingham(const word& name, const dictionary& prope
     : viscosityModel(name, properties, velocity, flux),
       phase_(velocity, flux, properties.dictName(), dimensionedScalar("rho", dimDensity, properties)),
       rules_(flowrest::rheology::PhaseRules::read(coefficients)),
-      yield_stress_("yieldStress", dimPressure, coefficients),
+      yield_stress_(dimensionedScalar::getOrDefault("yieldStress", coefficients, dimPressure, 0.0)),
       plastic_viscosity_("plasticViscosity", dimDynamicViscosity, coefficients),
       nu_(IOobject(name, velocity.time().timeName(), velocity.db(), IOobject::NO_READ, IOobject::AUTO_WRITE),
           velocity.mesh(), plastic_viscosity_ / phase_.density(), calculatedFvPatchScalarField::typeName) {
@@ -81,6 +83,11 @@ scalar biViscousBingham::viscosity(scalar plastic_viscosity, scalar yield_stress
   return flowrest::rheology::bi_viscous_viscosity(plastic_viscosity, yield_stress, critical_shear_rate_,
                                                   rate);
 }
+
+NewtonianConcrete::NewtonianConcrete(const word& name, const dictionary& properties,
+                                     const volVectorField& velocity, const surfaceScalarField& flux)
+    : RegularisedBingham(name, properties, properties.optionalSubDict(word(typeName) + "Coeffs"), velocity,
+                         flux) {}
 
 }  // namespace viscosityModels
 }  // namespace Foam

@@ -5,12 +5,13 @@
 #include "foamCases/rheology/flocculation.h"
 #include "viscosityModel.H"
 
-/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid.
+/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid, and as
+/// a Newtonian one.
 namespace Foam {
 namespace viscosityModels {
 
-/// What the two share. Keywords, beside those of flowrest::rheology::PhaseRules: `rho` (kg/m3), `yieldStress`
-/// (Pa), `plasticViscosity` (Pa s) and, for thixotropy, a dictionary `thixotropy` as
+/// What they share. Keywords, beside those of flowrest::rheology::PhaseRules: `rho` (kg/m3), `yieldStress`
+/// (Pa; 0 unless given), `plasticViscosity` (Pa s) and, for thixotropy, a dictionary `thixotropy` as
 /// flowrest::rheology::Flocculation has it.
 class RegularisedBingham : public viscosityModel {
  public:
@@ -63,6 +64,17 @@ class biViscousBingham : public RegularisedBingham {
 
  private:
   scalar critical_shear_rate_;
+};
+
+/// One viscosity, mixed with the air's and held by walls as that of the other laws is.
+class NewtonianConcrete : public RegularisedBingham {
+ public:
+  TypeName("NewtonianConcrete");
+  NewtonianConcrete(const word& name, const dictionary& properties, const volVectorField& velocity,
+                    const surfaceScalarField& flux);
+
+ protected:
+  scalar viscosity(scalar plastic_viscosity, scalar, scalar) const override { return plastic_viscosity; }
 };
 
 }  // namespace viscosityModels
