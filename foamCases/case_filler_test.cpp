@@ -171,7 +171,8 @@ TEST(CaseFiller, ASlumpsStepGrowsWhereThePlugInWatches) {
   }
   const auto duct = watched(scenes::load_scene("poiseuille-step-down", {{}, scenes::Model::papanastasiou}));
   EXPECT_EQ(duct.at("least"), duct.at("most"));
-  EXPECT_EQ(watched(roussel_slump("elasto-viscoplastic")).at("pressureCorrectors"), "6");
+  EXPECT_EQ(duct.at("pressureCorrectors"), "6");
+  EXPECT_EQ(watched(roussel_slump("elasto-viscoplastic")).at("pressureCorrectors"), "12");
   const auto unwatched = entries(scene_parameters(roussel_slump("papanastasiou"), false));
   EXPECT_FALSE(unwatched.contains("most"));
   EXPECT_EQ(unwatched.at("pressureCorrectors"), "6");
@@ -231,6 +232,9 @@ TEST(CaseFiller, TellsThePlugInEverythingOfTheLaw) {
               ::testing::AllOf(HasSubstr("transportModel      biViscousBingham;"),
                                HasSubstr("criticalShearRate     0.01;"), HasSubstr("massWeighted;"),
                                ::testing::Not(HasSubstr("thixotropy"))));
+  EXPECT_THAT(scene_parameters(roussel_slump("newtonian"), true),
+              ::testing::AllOf(HasSubstr("transportModel      NewtonianConcrete;"),
+                               HasSubstr("yieldStress         0;"), HasSubstr("plasticViscosity    50;")));
 }
 
 TEST(CaseFiller, CopiesTheCaseAndNothingARunLeftInIt) {
