@@ -343,8 +343,8 @@ TEST_F(PlugIn, ASlumpsStepGrowsAndItsVelocityIsWatched) {
 }
 
 /// A slump's plug thins as it widens: below the surface it is stretched by v/r in the plan, and so sheared at
-/// sqrt(12) v/r. Strains of the cells' velocities, which do not keep the volume there, gave 0.03 of that, and the
-/// plug did not pull.
+/// sqrt(12) v/r. Strains of the cells' velocities, which do not keep the volume there, gave 0.03 of that, and
+/// the plug did not pull.
 TEST_F(PlugIn, AStretchedPlugYields) {
   const auto scene = roussel_slump("elasto-viscoplastic", {"foam.cell=0.02", "time.end=8"});
   const auto result = run(scene);
@@ -368,8 +368,8 @@ TEST_F(PlugIn, AStretchedPlugYields) {
 }
 
 /// A Newtonian slump forgets how it began and becomes the viscous gravity current of Huppert (1982):
-/// r = 0.894 (g V^3 t / (3 nu))^(1/8). With walls that hold a layer thinner than a cell too little, it was 6 % too
-/// wide on 10 mm cells.
+/// r = 0.894 (g V^3 t / (3 nu))^(1/8). With walls that hold a layer thinner than a cell too little, it was 6
+/// % too wide on 10 mm cells.
 TEST_F(PlugIn, ANewtonianSlumpBecomesTheViscousGravityCurrent) {
   const auto scene = roussel_slump("newtonian", {"foam.cell=0.02", "time.end=5"});
   const auto result = run(scene);

@@ -111,8 +111,9 @@ tmp<volTensorField> ConcretePhase::gradient_of(tmp<surfaceVectorField> face_velo
 tmp<volTensorField> ConcretePhase::velocity_gradient(StrainRate rule) const {
   auto velocity = face_velocity(rule);
   if (rule == StrainRate::concrete && !alone()) {
-    // Cells put their velocity together from faces on either side, and where one has air behind it, it does not
-    // keep the volume: a spreading plug, which thins, would seem to widen upwards as well, and not be sheared.
+    // Cells put their velocity together from faces on either side, and where one has air behind it, it does
+    // not keep the volume: a spreading plug, which thins, would seem to widen upwards as well, and not be
+    // sheared.
     const surfaceVectorField normal(mesh().Sf() / mesh().magSf());
     velocity.ref() += normal * (flux_ / mesh().magSf() - (normal & velocity()));
   }

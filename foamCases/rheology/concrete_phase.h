@@ -10,7 +10,7 @@ namespace flowrest::rheology {
 /// Whose velocity gradient a law is given in cells that hold concrete and air.
 enum class StrainRate {
   mixture,  ///< that of the mixture's velocity, as OpenFOAM has it: air moving past shears the concrete
-  concrete  ///< faces take the velocity of the cell that holds more concrete, and across them that of the flux
+  concrete  ///< faces take the velocity of the cell that holds more concrete
 };
 
 /// How concrete's stress and that of the air make the stress of a cell that holds both.
@@ -65,10 +65,10 @@ class ConcretePhase {
   /// still the one that carried it, that is before the pressure is solved. False where there is none yet.
   bool find_amount_flux(Foam::tmp<Foam::surfaceScalarField>&) const;
 
-  /// d U_j / d x_i by the rule, 1/s; its boundary values hold the wall's own normal derivative. For concrete
-  /// its trace is the flux's divergence, none.
+  /// d U_j / d x_i by the rule, 1/s; its boundary values hold the wall's own normal derivative. Of concrete
+  /// what crosses a face is the flux, so that the trace is the flux's divergence: none.
   Foam::tmp<Foam::volTensorField> velocity_gradient(StrainRate) const;
-  /// The same of the cells' velocities alone: what a Laplacian of them acts on.
+  /// The same of the cells' velocities alone, on which viscosities and Laplacians act.
   Foam::tmp<Foam::volTensorField> cell_velocity_gradient(StrainRate) const;
   /// sqrt(2 D:D), 1/s, as OpenFOAM's own viscosity models have it.
   static Foam::tmp<Foam::volScalarField> shear_rate(const Foam::volTensorField& gradient);

@@ -5,8 +5,8 @@
 #include "foamCases/rheology/flocculation.h"
 #include "viscosityModel.H"
 
-/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid, and as
-/// a Newtonian one.
+/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid, and
+/// as a Newtonian one.
 namespace Foam {
 namespace viscosityModels {
 
