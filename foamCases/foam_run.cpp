@@ -377,7 +377,9 @@ class CaseRun {
                      {"bound", monitor_.measure().bound},
                      {"largest_median", monitor_.largest_median()},
                      {"largest_residual_median", monitor_.largest_residual_median()},
-                     {"noisy_share", monitor_.noisy_share()}};
+                     {"noisy_share", monitor_.noisy_share()},
+                     {"path_m", monitor_.path()},
+                     {"path_allowed_m", NoiseMonitor::path_allowed * scene_.body_height()}};
   }
 
   const scenes::Scene& scene_;
@@ -391,7 +393,7 @@ class CaseRun {
   runs::Progress progress_;
   std::unique_ptr<Sampler> sampler_;
   SolverLog log_{components(scene_)};
-  NoiseMonitor monitor_;
+  NoiseMonitor monitor_{scene_.body_height()};
   Status status_ = Status::running;
   std::string reason_;
   std::size_t steps_ = 0;

@@ -72,9 +72,12 @@ void SolverLog::read_line(std::string_view line) {
         std::max(step_.initial_residual_u, number_after(line, "Initial residual =").value_or(0.0));
   } else if (line.starts_with("Chatter of U =")) {
     chatter_ = number_after(line, "=");
+  } else if (line.starts_with("Noise of U =")) {
+    noise_ = number_after(line, "=");
   } else if (line.starts_with("ExecutionTime") && in_step_) {
     execution_time_ = number_after(line, "=").value_or(execution_time_);
     step_.chatter = std::exchange(chatter_, std::nullopt);
+    step_.noise = std::exchange(noise_, std::nullopt);
     steps_.push_back(step_);
     in_step_ = false;
   } else if (line == "End") {
@@ -139,6 +142,8 @@ void NoiseMonitor::end_block() {
     if (middle > measure_->bound) {
       if (noisy_++ == 0) first_noisy_ = block_.front().time;
       last_noisy_ = block_.back().time;
+      if (measure_ == &residual) residual_noisy_ = true;
+      for (const auto& step : block_) path_ += step.noise.value_or(0.0) * step.time_step;
     }
   }
   block_.clear();
@@ -148,16 +153,22 @@ double NoiseMonitor::noisy_share() const {
   return blocks_ > 1 ? static_cast<double>(noisy_) / static_cast<double>(blocks_ - 1) : 0.0;
 }
 
+bool NoiseMonitor::noisy() const { return residual_noisy_ || path_ > path_allowed * body_height_; }
+
 std::string NoiseMonitor::verdict() const {
   if (blocks_ < 2)
     return fmt::format("unjudged: the run has fewer than {} steps", block_steps + fewest_steps);
-  if (noisy_ == 0) return "sound";
+  if (!noisy()) return "sound";
+  const std::string moved =
+      residual_noisy_ ? "part of the spreading may be noise of the time step"
+                      : fmt::format("it could have moved the concrete by {:.2g} mm, where {:.2g} are allowed",
+                                    1e3 * path_, 1e3 * path_allowed * body_height_);
   return fmt::format(
       "noisy: the {} passes {} (median of {} steps) in {:.0f} % of the run, between "
       "{:.2f} and "
-      "{:.2f} s, and reaches {:.2g}; part of the spreading may be noise of the time step",
+      "{:.2f} s, and reaches {:.2g}; {}",
       measure_->name, measure_->bound, block_steps, std::max(1.0, 100.0 * noisy_share()), first_noisy_,
-      last_noisy_, largest_median_);
+      last_noisy_, largest_median_, moved);
 }
 
 }  // namespace flowrest::foam

@@ -19,6 +19,7 @@ struct SolverStep {
   /// What of the velocity's change over the step before the change before that did not foretell, over the
   /// mean speed; nothing where the plug-in does not watch, and in the first steps.
   std::optional<double> chatter = std::nullopt;
+  std::optional<double> noise = std::nullopt;  ///< the same as a speed, m/s
 };
 
 /// Turns log text, fed in any pieces, into steps; a line counts once it is whole.
@@ -48,7 +49,7 @@ class SolverLog {
   std::string components_;
   std::string partial_;
   SolverStep step_;
-  std::optional<double> chatter_;  ///< the log tells it after the step's end
+  std::optional<double> chatter_, noise_;  ///< the log tells them after the step's end
   std::vector<SolverStep> steps_;
   std::optional<double> time_begun_;
   double execution_time_ = 0.0;
@@ -77,7 +78,9 @@ class FileTail {
 /// Where it does not watch, the initial residual of U tells, by which a sound run stays below 0.02 once the
 /// concrete is released (0.07 while it still falls in steps of 18 ms, on 20 mm cells) and a noisy one at 0.2
 /// to 1; but it also rises in some runs whose velocity is smooth. Blocks of steps are judged by their median,
-/// the first one (the release) not at all.
+/// the first one (the release) not at all. What hardly moves any more chatters at no cost: a run is noisy
+/// where the noise of the blocks that chatter could have moved the concrete by a share of the body's height,
+/// as in MPM.
 class NoiseMonitor {
  public:
   /// A measure of noise, and what a median of it must not pass.
@@ -87,9 +90,13 @@ class NoiseMonitor {
   };
   static constexpr Measure chatter{"chatter of the velocity", 0.05};
   static constexpr Measure residual{"initial residual of U", 0.1};
+  static constexpr double path_allowed = 0.01;  ///< share of the body's height
   static constexpr std::size_t block_steps = 50;
   /// What a block cut short by the end must have to be judged.
   static constexpr std::size_t fewest_steps = 10;
+
+  /// `body_height` in m.
+  explicit NoiseMonitor(double body_height) : body_height_(body_height) {}
 
   void add(const SolverStep&);
   /// Judges the block the run ended in.
@@ -100,13 +107,18 @@ class NoiseMonitor {
   /// What the latest block was judged by.
   const Measure& measure() const { return *measure_; }
   double noisy_share() const;  ///< of the blocks judged
+  /// By how much noise could have moved the concrete while it passed its bound, m; 0 where only the residual
+  /// is known.
+  double path() const { return path_; }
   /// Largest median of a block, by what it was judged by, and of the residual in any case.
   double largest_median() const { return largest_median_; }
   double largest_residual_median() const { return largest_residual_median_; }
 
  private:
   void end_block();
+  bool noisy() const;
 
+  double body_height_;
   const Measure* measure_ = &residual;
   std::vector<SolverStep> block_;
   std::size_t blocks_ = 0;
@@ -115,6 +127,8 @@ class NoiseMonitor {
   double last_noisy_ = 0.0;
   double largest_median_ = 0.0;
   double largest_residual_median_ = 0.0;
+  double path_ = 0.0;
+  bool residual_noisy_ = false;  ///< in a block that only the residual could judge
 };
 
 }  // namespace flowrest::foam

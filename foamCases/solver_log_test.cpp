@@ -104,18 +104,22 @@ TEST(FileTail, GivesOnlyWhatIsNew) {
 /// What the plug-in prints comes between the end of a step and the beginning of the next.
 TEST(SolverLog, ReadsTheChatterOfAVelocityThatIsWatched) {
   SolverLog log;
-  const std::string watched = "Change of U = 0.02\nChatter of U = 0.003\n";
+  const std::string watched = "Chatter of U = 0.003\nNoise of U = 2e-5\n";
   log.feed(step_text(0.1, 0.1, 0.01) + step_text(0.2, 0.1, 0.01) + watched + step_text(0.3, 0.1, 0.01) +
            step_text(0.4, 0.1, 0.01));
   const auto steps = log.take_steps();
   ASSERT_EQ(steps.size(), 4U);
   EXPECT_FALSE(steps[1].chatter);
   EXPECT_EQ(steps[2].chatter, 0.003);
+  EXPECT_EQ(steps[2].noise, 2e-5);
   EXPECT_FALSE(steps[3].chatter);
+  EXPECT_FALSE(steps[3].noise);
 }
 
+constexpr double height = 0.3;  // m
+
 NoiseMonitor monitored(const std::vector<double>& residual_of_block) {
-  NoiseMonitor monitor;
+  NoiseMonitor monitor(height);
   double time = 0.0;
   for (const double residual : residual_of_block)
     for (std::size_t i = 0; i < NoiseMonitor::block_steps; ++i)
@@ -138,26 +142,27 @@ TEST(NoiseMonitor, TellsWhenARunIsNoisyEvenForAMoment) {
 }
 
 TEST(NoiseMonitor, ASingleRoughStepIsNotNoise) {
-  NoiseMonitor monitor;
+  NoiseMonitor monitor(height);
   for (int i = 0; i < 200; ++i) monitor.add({0.01 * i, 0.01, 0.1, i == 120 ? 0.9 : 0.01});
   monitor.finish();
   EXPECT_EQ(monitor.verdict(), "sound");
 }
 
 TEST(NoiseMonitor, JudgesTheLastStepsOfARunToo) {
-  NoiseMonitor monitor;
+  NoiseMonitor monitor(height);
   for (int i = 0; i < 70; ++i) monitor.add({0.01 * i, 0.01, 0.1, i < 50 ? 0.01 : 0.5});
   monitor.finish();
   EXPECT_THAT(monitor.verdict(), StartsWith("noisy: "));
 }
 
-/// Blocks with a residual and a chatter each.
-NoiseMonitor watched(const std::vector<std::pair<double, double>>& blocks) {
-  NoiseMonitor monitor;
+/// Blocks with a residual and a chatter each, of concrete that moves at `speed`, m/s; a block lasts half a
+/// second.
+NoiseMonitor watched(const std::vector<std::pair<double, double>>& blocks, double speed = 0.1) {
+  NoiseMonitor monitor(height);
   double time = 0.0;
   for (const auto& [residual, chatter] : blocks)
     for (std::size_t i = 0; i < NoiseMonitor::block_steps; ++i)
-      monitor.add({time += 0.01, 0.01, 0.1, residual, chatter});
+      monitor.add({time += 0.01, 0.01, 0.1, residual, chatter, chatter * speed});
   monitor.finish();
   return monitor;
 }
@@ -167,12 +172,24 @@ TEST(NoiseMonitor, ASmoothVelocityIsSoundWhateverItsResidual) {
   EXPECT_EQ(monitor.verdict(), "sound");
   EXPECT_EQ(monitor.largest_median(), 2e-5);
   EXPECT_EQ(monitor.largest_residual_median(), 0.3);
+  EXPECT_EQ(monitor.path(), 0.0);
 }
 
 TEST(NoiseMonitor, AVelocityThatChattersIsNoisyWhateverItsResidual) {
   const auto monitor = watched({{0.02, 1e-4}, {0.02, 1e-4}, {0.02, 0.4}, {0.02, 1e-4}});
   EXPECT_THAT(monitor.verdict(), StartsWith("noisy: the chatter of the velocity passes 0.05"));
   EXPECT_THAT(monitor.verdict(), HasSubstr("in 33 % of the run, between 1.01 and 1.50 s, and reaches 0.4"));
+  EXPECT_THAT(monitor.verdict(), HasSubstr("moved the concrete by 20 mm, where 3 are allowed"));
+}
+
+/// What all but stands may chatter: it moves nothing.
+TEST(NoiseMonitor, ChatterIsNoiseWhereItCouldHaveMovedTheBody) {
+  const std::vector<std::pair<double, double>> blocks = {{0.02, 1e-4}, {0.02, 1e-4}, {0.02, 0.4}};
+  const auto still = watched(blocks, 0.01);
+  EXPECT_NEAR(still.path(), 0.4 * 0.01 * 0.5, 1e-12);
+  EXPECT_EQ(still.verdict(), "sound");
+  EXPECT_EQ(still.noisy_share(), 0.5);
+  EXPECT_THAT(watched(blocks, 0.02).verdict(), StartsWith("noisy: "));
 }
 
 TEST(NoiseMonitor, VouchesForNothingItHasNotSeen) {

@@ -49,20 +49,21 @@ void stagedStep::watch() {
   if (last_but_one_.size() == now.size()) {
     constexpr scalar concrete = 0.5;
     const scalar ratio = step / last_step_;
-    vector sums = Zero;  // changed, changed unforeseen, moved; m4/s
-    scalar full = 0.0;   // m3
+    scalar unforeseen = 0.0, moved = 0.0;  // m4/s
+    scalar full = 0.0;                     // m3
     forAll(now, cell) {
       if (fraction->primitiveField()[cell] < concrete) continue;
       const scalar volume = mesh_.V()[cell];
       const vector change = now[cell] - last_[cell];
-      sums += volume *
-              vector(mag(change), mag(change - ratio * (last_[cell] - last_but_one_[cell])), mag(now[cell]));
+      unforeseen += volume * mag(change - ratio * (last_[cell] - last_but_one_[cell]));
+      moved += volume * mag(now[cell]);
       full += volume;
     }
-    reduce(sums, sumOp<vector>());
+    reduce(unforeseen, sumOp<scalar>());
+    reduce(moved, sumOp<scalar>());
     reduce(full, sumOp<scalar>());
-    const scalar moved = std::max(sums.z(), stillness_ * full) + VSMALL;
-    Info << "Change of U = " << sums.x() / moved << nl << "Chatter of U = " << sums.y() / moved << endl;
+    Info << "Chatter of U = " << unforeseen / (std::max(moved, stillness_ * full) + VSMALL) << nl
+         << "Noise of U = " << unforeseen / (full + VSMALL) << endl;
   }
   last_but_one_ = last_;
   last_ = now;
