@@ -150,9 +150,10 @@ std::string after_every_step(const Scene& scene, bool plug_in) {
   return fmt::format("afterEveryStep\n{{\n{}}}\n", text);
 }
 
-/// Correctors of the pressure. On thin rows at the base a slump chatters with fewer, whatever its step.
+/// Correctors of the pressure. Concrete that slows under a surface chatters with fewer, whatever its step.
 int pressure_correctors(const Scene& scene, bool plug_in) {
-  return plug_in && scene.kind == scenes::Kind::slump ? 12 : 6;
+  const bool slows = scene.kind != scenes::Kind::duct && scene.kind != scenes::Kind::dam_break;
+  return plug_in && slows ? 12 : 6;
 }
 
 std::string stress_model(const Scene& scene, bool plug_in) {
