@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "foamCases/plug_in.h"
 #include "foamCases/vessel_mesh.h"
 #include "foamCases/viscosity.h"
 #include "scenes/step_limits.h"
@@ -68,10 +69,10 @@ std::string mixing_name(FoamMixing mixing) {
 /// What every law of the plug-in is told.
 std::string common_coefficients(const Scene& scene, const std::string& indent) {
   const auto& material = scene.material;
-  const bool yields = material.model != Model::newtonian;
   std::string text = fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s\n",
-                                 indent, yields ? material.yield_stress : 0.0, material.plastic_viscosity);
-  if (yields && scene.thixotropy)
+                                 indent, material.model == Model::newtonian ? 0.0 : material.yield_stress,
+                                 material.plastic_viscosity);
+  if (carries_flocculation(scene))
     text += fmt::format(
         "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
         "{0}    deflocculationCoefficient   {2};\n{0}    initialFlocculation         {3};\n{0}}}\n",
@@ -168,7 +169,7 @@ std::string stress_model(const Scene& scene, bool plug_in) {
 std::string concrete_laws(const Scene& scene, bool plug_in) {
   std::string sampled, state;
   if (plug_in && is_vessel(scene)) sampled += " shearRate";
-  if (plug_in && scene.thixotropy && scene.material.model != Model::newtonian) sampled += " flocculation";
+  if (plug_in && carries_flocculation(scene)) sampled += " flocculation";
   if (scene.material.model == Model::elasto_viscoplastic) {
     sampled += " plasticShearRate";
     state += " stress";

@@ -49,12 +49,15 @@ Scene settled(Scene scene, bool plug_in) {
   return scene;
 }
 
+bool carries_flocculation(const Scene& scene) {
+  return scene.thixotropy && scene.material.model != Model::newtonian;
+}
+
 bool needs_plug_in(const Scene& scene) {
   // What is mended where cells lean is mended by the plug-in.
   const bool leans = scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel;
   return leans || scene.base.law == scenes::Wall::friction ||
-         scene.material.model == Model::elasto_viscoplastic ||
-         (scene.thixotropy && scene.material.model != Model::newtonian);
+         scene.material.model == Model::elasto_viscoplastic || carries_flocculation(scene);
 }
 
 std::optional<fs::path> plug_in_for(const Scene& scene) {

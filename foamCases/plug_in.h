@@ -22,6 +22,9 @@ std::optional<std::filesystem::path> plug_in_for(const scenes::Scene&);
 /// where it does not say.
 scenes::Scene settled(scenes::Scene, bool plug_in);
 
+/// Whether concrete carries flocculation, which a Newtonian fluid has no use for.
+bool carries_flocculation(const scenes::Scene&);
+
 /// Whether a scene's law or walls are such as only the plug-in has.
 bool needs_plug_in(const scenes::Scene&);
 

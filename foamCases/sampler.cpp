@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "foamCases/case_filler.h"
+#include "foamCases/plug_in.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::foam {
@@ -63,9 +64,7 @@ void Sampler::continue_from(const runs::Table& history) {
   next_profile_ = next(scene_.output.profile_interval);
 }
 
-bool Sampler::thixotropic() const {
-  return scene_.thixotropy && scene_.material.model != scenes::Model::newtonian;
-}
+bool Sampler::thixotropic() const { return carries_flocculation(scene_); }
 
 std::vector<double> Sampler::flocculation(double time, const ReadField& read) const {
   return time > 0.0 ? read("flocculation", 1)

@@ -58,7 +58,7 @@ class Sampler {
   /// last step.
   void name_steps(std::vector<std::string>& columns) const;
   void add_steps(double time, std::vector<double>& row);
-  /// Whether concrete carries flocculation, which a Newtonian fluid has no use for.
+  /// Whether rows tell of flocculation.
   bool thixotropic() const;
   /// The field of the flocculation, as it is at the start while the solver has not written it yet.
   std::vector<double> flocculation(double time, const ReadField&) const;

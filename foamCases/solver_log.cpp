@@ -142,7 +142,8 @@ void NoiseMonitor::end_block() {
     if (middle > measure_->bound) {
       if (noisy_++ == 0) first_noisy_ = block_.front().time;
       last_noisy_ = block_.back().time;
-      if (measure_ == &residual) residual_noisy_ = true;
+      const auto measured = [](const SolverStep& step) { return step.noise.has_value(); };
+      if (measure_ == &residual || std::none_of(block_.begin(), block_.end(), measured)) unmeasured_ = true;
       for (const auto& step : block_) path_ += step.noise.value_or(0.0) * step.time_step;
     }
   }
@@ -153,16 +154,16 @@ double NoiseMonitor::noisy_share() const {
   return blocks_ > 1 ? static_cast<double>(noisy_) / static_cast<double>(blocks_ - 1) : 0.0;
 }
 
-bool NoiseMonitor::noisy() const { return residual_noisy_ || path_ > path_allowed * body_height_; }
+bool NoiseMonitor::noisy() const { return unmeasured_ || path_ > path_allowed * body_height_; }
 
 std::string NoiseMonitor::verdict() const {
   if (blocks_ < 2)
     return fmt::format("unjudged: the run has fewer than {} steps", block_steps + fewest_steps);
   if (!noisy()) return "sound";
   const std::string moved =
-      residual_noisy_ ? "part of the spreading may be noise of the time step"
-                      : fmt::format("it could have moved the concrete by {:.2g} mm, where {:.2g} are allowed",
-                                    1e3 * path_, 1e3 * path_allowed * body_height_);
+      unmeasured_ ? "part of the spreading may be noise of the time step"
+                  : fmt::format("it could have moved the concrete by {:.2g} mm, where {:.2g} are allowed",
+                                1e3 * path_, 1e3 * path_allowed * body_height_);
   return fmt::format(
       "noisy: the {} passes {} (median of {} steps) in {:.0f} % of the run, between "
       "{:.2f} and "

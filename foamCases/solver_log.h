@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runs/noise.h"
+
 /// Follows interFoam's log while it is written, and judges from it whether the run can be trusted.
 namespace flowrest::foam {
 
@@ -90,7 +92,7 @@ class NoiseMonitor {
   };
   static constexpr Measure chatter{"chatter of the velocity", 0.05};
   static constexpr Measure residual{"initial residual of U", 0.1};
-  static constexpr double path_allowed = 0.01;  ///< share of the body's height
+  static constexpr double path_allowed = runs::noise_path_allowed;
   static constexpr std::size_t block_steps = 50;
   /// What a block cut short by the end must have to be judged.
   static constexpr std::size_t fewest_steps = 10;
@@ -128,7 +130,7 @@ class NoiseMonitor {
   double largest_median_ = 0.0;
   double largest_residual_median_ = 0.0;
   double path_ = 0.0;
-  bool residual_noisy_ = false;  ///< in a block that only the residual could judge
+  bool unmeasured_ = false;  ///< noisy in a block whose noise is not known as a speed
 };
 
 }  // namespace flowrest::foam

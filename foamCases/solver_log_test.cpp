@@ -192,6 +192,14 @@ TEST(NoiseMonitor, ChatterIsNoiseWhereItCouldHaveMovedTheBody) {
   EXPECT_THAT(watched(blocks, 0.02).verdict(), StartsWith("noisy: "));
 }
 
+/// As in the log of a plug-in that told no speed, from which a run is gone on with.
+TEST(NoiseMonitor, ChatterOfNoKnownSpeedIsNoise) {
+  NoiseMonitor monitor(height);
+  for (int i = 0; i < 100; ++i) monitor.add({0.01 * i, 0.01, 0.1, 0.02, i < 50 ? 1e-4 : 0.4});
+  monitor.finish();
+  EXPECT_THAT(monitor.verdict(), StartsWith("noisy: the chatter of the velocity passes 0.05"));
+}
+
 TEST(NoiseMonitor, VouchesForNothingItHasNotSeen) {
   EXPECT_THAT(monitored({0.01}).verdict(), StartsWith("unjudged: "));
 }

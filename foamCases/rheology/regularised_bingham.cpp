@@ -30,7 +30,7 @@ RegularisedBingham::RegularisedBingham(const word& name, const dictionary& prope
     : viscosityModel(name, properties, velocity, flux),
       phase_(velocity, flux, properties.dictName(), dimensionedScalar("rho", dimDensity, properties)),
       rules_(flowrest::rheology::PhaseRules::read(coefficients)),
-      yield_stress_(dimensionedScalar::getOrDefault("yieldStress", coefficients, dimPressure, 0.0)),
+      yield_stress_("yieldStress", dimPressure, coefficients),
       plastic_viscosity_("plasticViscosity", dimDynamicViscosity, coefficients),
       nu_(IOobject(name, velocity.time().timeName(), velocity.db(), IOobject::NO_READ, IOobject::AUTO_WRITE),
           velocity.mesh(), plastic_viscosity_ / phase_.density(), calculatedFvPatchScalarField::typeName) {

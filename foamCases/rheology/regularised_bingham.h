@@ -11,7 +11,7 @@ namespace Foam {
 namespace viscosityModels {
 
 /// What they share. Keywords, beside those of flowrest::rheology::PhaseRules: `rho` (kg/m3), `yieldStress`
-/// (Pa; 0 unless given), `plasticViscosity` (Pa s) and, for thixotropy, a dictionary `thixotropy` as
+/// (Pa), `plasticViscosity` (Pa s) and, for thixotropy, a dictionary `thixotropy` as
 /// flowrest::rheology::Flocculation has it.
 class RegularisedBingham : public viscosityModel {
  public:

@@ -49,21 +49,16 @@ void stagedStep::watch() {
   if (last_but_one_.size() == now.size()) {
     constexpr scalar concrete = 0.5;
     const scalar ratio = step / last_step_;
-    scalar unforeseen = 0.0, moved = 0.0;  // m4/s
-    scalar full = 0.0;                     // m3
+    vector sums = Zero;  // changed unforeseen and moved, m4/s; volume, m3
     forAll(now, cell) {
       if (fraction->primitiveField()[cell] < concrete) continue;
       const scalar volume = mesh_.V()[cell];
       const vector change = now[cell] - last_[cell];
-      unforeseen += volume * mag(change - ratio * (last_[cell] - last_but_one_[cell]));
-      moved += volume * mag(now[cell]);
-      full += volume;
+      sums += volume * vector(mag(change - ratio * (last_[cell] - last_but_one_[cell])), mag(now[cell]), 1.0);
     }
-    reduce(unforeseen, sumOp<scalar>());
-    reduce(moved, sumOp<scalar>());
-    reduce(full, sumOp<scalar>());
-    Info << "Chatter of U = " << unforeseen / (std::max(moved, stillness_ * full) + VSMALL) << nl
-         << "Noise of U = " << unforeseen / (full + VSMALL) << endl;
+    reduce(sums, sumOp<vector>());
+    Info << "Chatter of U = " << sums.x() / (std::max(sums.y(), stillness_ * sums.z()) + VSMALL) << nl
+         << "Noise of U = " << sums.x() / (sums.z() + VSMALL) << endl;
   }
   last_but_one_ = last_;
   last_ = now;

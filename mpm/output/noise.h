@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/solver/solver.h"
+#include "runs/noise.h"
 
 namespace flowrest::mpm {
 
@@ -71,8 +72,7 @@ struct NoiseRecord {
   static constexpr double within_cells_bound = 0.3;
   /// In sound runs 0.001 to 0.04; past the viscous limit of an explicit fluid 0.1 to 0.5.
   static constexpr double between_steps_bound = 0.1;
-  /// Share of the body's height.
-  static constexpr double path_allowed = 0.01;
+  static constexpr double path_allowed = runs::noise_path_allowed;
 
   NoiseSeen within_cells, between_steps;
   double judged_until = 0.0;  ///< s
