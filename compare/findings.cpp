@@ -500,22 +500,19 @@ std::string fair_slump(const Comparison& comparison) {
     return fair_runs;
   std::string text =
       "The exact profiles are quasi-static: they are the shapes at which gravity is just held by the yield "
-      "stress, reached "
-      "without inertia. A cone that is let go at once arrives with momentum and spreads past them; how far "
-      "depends on its "
-      "viscosity. (For Roussel's benchmark, plastic viscosities of 20, 50 and 500 Pa s arrested at 577, 570 "
-      "and 567 mm in one "
-      "and the same scheme, about 1 % of overshoot at 50 Pa s; taken to infinite viscosity, 565 ± 4 mm "
-      "for a spread whose "
-      "second-order solution is 562 mm.) The leading order in height over radius, whose foot lies at 600 mm "
-      "there, leaves out "
-      "the extensional stress in the unsheared layer and is too wide; a run that matches it does so because "
-      "its errors cancel. "
-      "So the fair comparisons are: one run with another of the same law, which shows the discretisation; "
-      "one run with another "
-      "of the same solver, which shows the law; and any run with the second-order profile only as a lower "
-      "limit that inertia "
-      "carries it past.";
+      "stress, reached without inertia. A cone that is let go at once arrives with momentum, which may carry "
+      "it past them; how far depends on its viscosity. (For Roussel's benchmark, plastic viscosities of 20, "
+      "50 "
+      "and 500 Pa s arrested at 557, 554 and 553 mm in one and the same scheme on 10 mm cells; taken to "
+      "infinite "
+      "viscosity on 5 mm cells, 553 ± 5 mm for a spread whose second-order solution is 562 mm, so that the "
+      "profile's next order may be worth 10 mm.) The leading order in height over radius, whose foot lies at "
+      "600 mm there, leaves out the extensional stress in the unsheared layer and is too wide; a run that "
+      "matches it does so because its errors cancel. So the fair comparisons are: one run with another of "
+      "the "
+      "same law, which shows the discretisation; one run with another of the same solver, which shows the "
+      "law; "
+      "and any run with the second-order profile only to within that next order.";
   const bool axisymmetric = comparison.radial;
   return axisymmetric ? text
                       : "The exact profile is quasi-static and of leading order: inertia carries a slump "
