@@ -19,7 +19,14 @@ inline double cpu_seconds() {
 /// Fused multiply-adds per CPU second of one core in double precision: independent chains, as wide as this
 /// build's vectors.
 inline double fma_per_second() {
-  typedef double Wide __attribute__((vector_size(64)));
+#if defined(__AVX512F__)
+  constexpr int lanes = 8;
+#elif defined(__AVX__)
+  constexpr int lanes = 4;
+#else
+  constexpr int lanes = 2;
+#endif
+  typedef double Wide __attribute__((vector_size(lanes * sizeof(double))));
   constexpr int chains = 8, rounds = 4'000'000;
   Wide chain[chains];
   for (int i = 0; i < chains; ++i) chain[i] = Wide{} + 1.0 + 0.1 * i;
@@ -28,7 +35,7 @@ inline double fma_per_second() {
   for (int r = 0; r < rounds; ++r)
     for (auto& c : chain) c = c * factor + term;
   benchmark::DoNotOptimize(chain);
-  return 8.0 * chains * rounds / (cpu_seconds() - begin);
+  return double(lanes) * chains * rounds / (cpu_seconds() - begin);
 }
 
 /// Bytes per CPU second that one core moves through memory, reading and writing.
