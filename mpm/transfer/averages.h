@@ -34,11 +34,13 @@ T* weighted_rows(Tile<T, Dim>& tile, const Weights<T, Dim, Quadratic>& weights,
   return rows;
 }
 
-/// Adds the particles [first, first + count), all of one cell, to that cell's nodes in each scalar's plane.
-template <class T, int Dim, int Scalars>
-void scatter_scalars(T* planes, int base, const T* rows, const Weights<T, Dim, Quadratic>& weights, int first,
-                     int count) {
-  constexpr int across = Dim == 3 ? 3 : 1, values = record * Scalars;
+/// Adds the particles [first, first + count), all of one cell, to that cell's nodes in the planes of
+/// `Together` scalars from `from` on.
+template <class T, int Dim, int Scalars, int Together>
+FLOWREST_INLINE void scatter_together(T* planes, int base, const T* rows,
+                                      const Weights<T, Dim, Quadratic>& weights, int first, int count,
+                                      int from) {
+  constexpr int across = Dim == 3 ? 3 : 1, values = record * Together;
   using R = Record<T, values>;
   R sum[3][across];
 #pragma GCC unroll 3
@@ -46,7 +48,7 @@ void scatter_scalars(T* planes, int base, const T* rows, const Weights<T, Dim, Q
 #pragma GCC unroll 3
     for (int j = 0; j < across; ++j) sum[i][j] = R{};
   for (int q = first; q < first + count; ++q) {
-    const R row = record_at<values>(rows + q * values);
+    const R row = record_at<values>(rows + (q * Scalars + from) * record);
     const R along[3] = {weights.weight[0][0][q] * row, row, weights.weight[0][1][q] * row};
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
@@ -72,10 +74,19 @@ void scatter_scalars(T* planes, int base, const T* rows, const Weights<T, Dim, Q
     for (int j = 0; j < across; ++j) {
       alignas(64) T out[values];
       record_at<values>(out) = sum[i][j];
-      for (int s = 0; s < Scalars; ++s)
-        record_at(planes + s * plane_values<Dim> + base + arena_index<Dim>(i, j, 0)) +=
+      for (int s = 0; s < Together; ++s)
+        record_at(planes + (from + s) * plane_values<Dim> + base + arena_index<Dim>(i, j, 0)) +=
             record_at(out + s * record);
     }
+}
+
+/// The same for all scalars: together where a register holds them, so that no sum leaves its register.
+template <class T, int Dim, int Scalars>
+void scatter_scalars(T* planes, int base, const T* rows, const Weights<T, Dim, Quadratic>& weights, int first,
+                     int count) {
+  constexpr int together = fits_register<T, record * Scalars> ? Scalars : 1;
+  for (int s = 0; s < Scalars; s += together)
+    scatter_together<T, Dim, Scalars, together>(planes, base, rows, weights, first, count, s);
 }
 
 /// Folds what fell behind plane walls onto its mirror image: scalars are even across every wall.
