@@ -16,7 +16,7 @@ constexpr int narrow_lane_bytes = lane_bytes > 32 ? 32 : lane_bytes;
 /// halves of it. The compiler has vectors wider than the instruction set too, but takes them through memory:
 /// in double precision under AVX2 that made particles to grid seventeen times as slow.
 template <class T, int Values>
-constexpr bool fits_register = Values * static_cast<int>(sizeof(T)) <= lane_bytes;
+constexpr bool fits_register = Values* static_cast<int>(sizeof(T)) <= lane_bytes;
 template <class T, int Values, bool Fits = fits_register<T, Values>>
 struct RecordOf;
 template <>
@@ -49,9 +49,7 @@ struct __attribute__((may_alias)) Halves {
 
   Halves() = default;
   constexpr FLOWREST_INLINE Halves(const Half& l, const Half& h) : low(l), high(h) {}
-  constexpr FLOWREST_INLINE Halves(T a, T b, T c, T d) : low{a, b}, high{c, d} {
-    static_assert(Values == 4);
-  }
+  constexpr FLOWREST_INLINE Halves(T a, T b, T c, T d) : low{a, b}, high{c, d} { static_assert(Values == 4); }
   FLOWREST_INLINE T operator[](int i) const { return i < Values / 2 ? low[i] : high[i - Values / 2]; }
   FLOWREST_INLINE Halves& operator+=(const Halves& b) { return *this = *this + b; }
   FLOWREST_INLINE Halves& operator-=(const Halves& b) { return *this = *this - b; }
