@@ -110,6 +110,8 @@ std::string components(const scenes::Scene& scene) {
 std::string walls_differ(const scenes::Scene& scene) {
   if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity)
     return "no mould: the cone is released at once";
+  if (scene.kind == scenes::Kind::l_box && scene.l_box().gate_lift_velocity)
+    return "no gate: the reservoir is open from the start";
   return "";
 }
 

@@ -82,6 +82,8 @@ struct LBoxGeometry {
   int rebars = 3;                 ///< upright, evenly across the width
   double rebar_diameter = 0.012;  ///< m
   double rebar_distance = 0.006;  ///< m, of the bars' axes from the reservoir
+  /// m/s, at which the gate is lifted; without one it is gone at once.
+  std::optional<double> gate_lift_velocity;
   double length() const { return reservoir_length + channel_length; }
   bool operator==(const LBoxGeometry&) const = default;
 };

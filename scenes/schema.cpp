@@ -92,6 +92,10 @@ std::vector<Key> l_box_keys() {
       size("rebar_diameter", AT(draft.l_box().rebar_diameter), "diameter of the bars"),
       size("rebar_distance", AT(draft.l_box().rebar_distance),
            "distance of the bars' axes from the reservoir"),
+      number("geometry.gate_lift_velocity", "m/s", above(0.0, 1e3), AT(draft.l_box().gate_lift_velocity),
+             "speed at which the gate of the reservoir is lifted")
+          .otherwise("the gate is gone at once")
+          .only_in({Kind::l_box}),
   };
 }
 

@@ -158,6 +158,9 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:3:31: geometry.channel_height is 0.7 m, the reservoir 0.6 m high; allowed: less than the "
      "reservoir's "
      "height"},
+    {"LBoxGateThatStandsStill", l_box_text, "kind = \"l-box\"",
+     "kind = \"l-box\"\ngeometry = { gate_lift_velocity = 0 }",
+     "wrong.toml:3:35: geometry.gate_lift_velocity is 0; allowed: greater than 0, at most 1000"},
     {"LBoxCellsWiderThanTheChannel", l_box_text, "cell = 0.01", "cell = 0.12",
      "wrong.toml:13:8: mpm.cell is 0.12 m, larger than the channel (0.1 m); allowed: at most 0.1"},
     {"FunnelThatWidensDownwards", v_funnel_text, "[time]", "[geometry]\noutlet_width = 0.6\n[time]",

@@ -11,6 +11,8 @@ using scenes::Dimension;
 
 /// Thickness of walls that real ones do not have, so that nothing finds itself behind them. m
 constexpr double thickness = 0.04;
+/// Of an L-box's gate: what has run under it must find room behind it.
+constexpr double gate_thickness = 0.006;
 
 Contact contact_of(const scenes::WallContact& c) {
   if (c.law == scenes::Wall::friction) return Contact::friction;
@@ -145,6 +147,20 @@ class Builder {
         "front", upright({{{face, lip}, {back, lip}, {back, top}, {face, top}}, {true, false, false, true}},
                          0.0, side)));
     if (dim_ == 3) rebars(half);
+    if (g.gate_lift_velocity) gate(*g.gate_lift_velocity, side);
+  }
+
+  /// A plate in front of the opening, lifted until it is clear of it.
+  void gate(double velocity, double side) {
+    const auto& g = scene_.l_box();
+    const double face = g.reservoir_length, back = face + gate_thickness;
+    Wall w =
+        wall("gate", upright({{{face, 0.0}, {back, 0.0}, {back, g.channel_height}, {face, g.channel_height}},
+                              {false, false, false, true}},
+                             0.0, side));
+    w.motion.velocity[up_] = velocity;
+    w.opens_at = g.channel_height / velocity;
+    made_.walls.push_back(w);
   }
 
   void rebars(bool half) {

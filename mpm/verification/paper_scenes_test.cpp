@@ -97,6 +97,20 @@ TEST_F(PaperScenes, AnLBoxRunsUnderItsFrontWallAndTheStifferMixStopsShorter) {
   EXPECT_NEAR(last(b, "front_mm"), 544.2, 15.0);
 }
 
+TEST_F(PaperScenes, AnLBoxsGateHoldsBackWhatItHasNotLetGo) {
+  // Reference: the plane section, 20 mm cells, where a gate that is gone at once gives 0.44 s.
+  const std::vector<std::string> settings = {"geometry.dimension=plane", "mpm.cell=0.02", "time.end=1.2"};
+  const auto slow = made("mix-a-lbox-sf0", with(settings, {"geometry.gate_lift_velocity=0.01"}));
+  const auto lifted = made("mix-a-lbox-sf0", with(settings, {"geometry.gate_lift_velocity=0.3"}));
+  const double arrival = time_of(lifted, "front_mm", 600.0 - 1e-6, true);
+  std::printf("    gate at 0.3 m/s: arrives after %.2f s; at 0.01 m/s the front is at %.1f mm by then\n",
+              arrival, last(slow, "front_mm"));
+  EXPECT_NEAR(arrival, 0.66, 0.06);
+  EXPECT_LT(last(slow, "front_mm"), 60.0);
+  // 12 mm open: what has passed is not more than a jet of free fall through the gap would bring.
+  EXPECT_GT(last(slow, "start_height_mm"), 560.0);
+}
+
 TEST_F(PaperScenes, AnLBoxsBarsLetTheSofterMixPassAndHoldItBack) {
   // Reference: half of the box, 16.7 mm cells, three to the distance of the bars, which are 0.7 of a cell
   // thick.
