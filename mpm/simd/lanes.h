@@ -61,6 +61,7 @@ struct __attribute__((may_alias)) Halves {
   friend FLOWREST_INLINE Halves operator-(const Halves& a, const Halves& b) {
     return {a.low - b.low, a.high - b.high};
   }
+  friend FLOWREST_INLINE Halves operator-(const Halves& a) { return {-a.low, -a.high}; }
   friend FLOWREST_INLINE Halves operator*(const Halves& a, const Halves& b) {
     return {a.low * b.low, a.high * b.high};
   }
