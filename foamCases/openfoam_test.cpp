@@ -241,8 +241,7 @@ TEST_F(OpenFoam, ADamBreaks) {
 TEST_F(PlugIn, AnLBoxRunsOutBetweenItsBars) {
   for (const char* model : {"papanastasiou", "elasto-viscoplastic"}) {
     const auto result = run(scenes::load_scene(
-        "mix-a-lbox-sf0", {{"foam.cell=0.033", "time.end=0.12", "geometry.gate_lift_velocity=0.15"},
-                           scenes::model_from_name(model)}));
+        "mix-a-lbox-sf0", {{"foam.cell=0.033", "time.end=0.12"}, scenes::model_from_name(model)}));
     EXPECT_EQ(outcome_.status, runs::Status::end_time) << model;
     EXPECT_EQ(result.info["walls_differ"], "no gate: the reservoir is open from the start");
     EXPECT_EQ(result.info["verdict"], "sound") << model;
