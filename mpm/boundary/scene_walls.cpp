@@ -11,7 +11,7 @@ using scenes::Dimension;
 
 /// Thickness of walls that real ones do not have, so that nothing finds itself behind them. m
 constexpr double thickness = 0.04;
-/// Of an L-box's gate: what has run under it must find room behind it.
+/// Of an L-box's gate, m: what has run under it must find room behind it.
 constexpr double gate_thickness = 0.006;
 
 Contact contact_of(const scenes::WallContact& c) {
@@ -92,7 +92,7 @@ class Builder {
     if (g.mould_lift_velocity) mould(*g.mould_lift_velocity);
   }
 
-  /// A steel cone open at both ends, lifted until it is clear of what it held.
+  /// A steel cone open at both ends.
   void mould(double velocity) {
     const auto& g = scene_.slump();
     const Outline section = {{{g.cone_radius_bottom, 0.0},
@@ -109,9 +109,14 @@ class Builder {
       w.contact = contact_of(*scene_.mould);
       w.friction = scene_.mould->friction;
     }
+    lift(std::move(w), velocity, g.cone_height);
+  }
+
+  /// A wall of that height that goes up from the start and is gone once it is clear of what it held.
+  void lift(Wall w, double velocity, double height) {
     w.motion.velocity[up_] = velocity;
-    w.opens_at = g.cone_height / velocity;
-    made_.walls.push_back(w);
+    w.opens_at = height / velocity;
+    made_.walls.push_back(std::move(w));
   }
 
   void duct() {
@@ -150,17 +155,14 @@ class Builder {
     if (g.gate_lift_velocity) gate(*g.gate_lift_velocity, side);
   }
 
-  /// A plate in front of the opening, lifted until it is clear of it.
+  /// A plate before the opening, which holds as the other walls do.
   void gate(double velocity, double side) {
     const auto& g = scene_.l_box();
     const double face = g.reservoir_length, back = face + gate_thickness;
-    Wall w =
-        wall("gate", upright({{{face, 0.0}, {back, 0.0}, {back, g.channel_height}, {face, g.channel_height}},
-                              {false, false, false, true}},
-                             0.0, side));
-    w.motion.velocity[up_] = velocity;
-    w.opens_at = g.channel_height / velocity;
-    made_.walls.push_back(w);
+    lift(wall("gate", upright({{{face, 0.0}, {back, 0.0}, {back, g.channel_height}, {face, g.channel_height}},
+                               {false, false, false, true}},
+                              0.0, side)),
+         velocity, g.channel_height);
   }
 
   void rebars(bool half) {
