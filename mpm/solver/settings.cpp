@@ -71,7 +71,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
   s.transfer =
       scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
-  // A duct's volume is held by its walls: averaging through the nodes only adds noise there (README).
+  // A duct's volume is held by its walls: averaging through the nodes buys nothing there (README).
   if (scene.kind == scenes::Kind::duct) s.dilatation = Dilatation::cell_average;
   if (paper) s.dilatation = Dilatation::centroid;
   if (scene.mpm.b_bar)
@@ -87,6 +87,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
   s.density_correction = density_correction(scene);
   s.free_surface = scene.kind != scenes::Kind::duct;
+  s.full_cells = scene.kind == scenes::Kind::duct && !paper;
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);

@@ -30,6 +30,7 @@ struct SolverSettings {
   double density_correction =
       0.0;  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit strain
   bool free_surface = true;
+  bool full_cells = false;  ///< every cell is full and stays so, as a duct's
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};

@@ -3,6 +3,7 @@
 #include "mpm/boundary/plane_walls.h"
 #include "mpm/material/deviator.h"
 #include "mpm/transfer/averages.h"
+#include "mpm/transfer/full_cells.h"
 #include "mpm/transfer/shape.h"
 #include "mpm/transfer/tile.h"
 
@@ -229,18 +230,21 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         }
       }
 
-    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
-    // workspace's rest.
-    Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
-    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 40 <= workspace_arrays);
-    const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
-    const T per_cell_volume = T(1) / (circle * (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell);
-    using R = Record<T>;
     const T *v[Dim], *deviator[Deviator<T, Dim>::components], *own[Dim][Dim];
     for (int c = 0; c < Dim; ++c) v[c] = tile.open(particles.velocity[c]);
     for (int c = 0; c < Deviator<T, Dim>::components; ++c) deviator[c] = tile.open(particles.deviator[c]);
     for (int c = 0; c < Dim; ++c)
       for (int a = 0; a < Dim; ++a) own[c][a] = affine ? tile.open(particles.affine[c * Dim + a]) : nullptr;
+    const T cell_volume = (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell;
+    if (step.full_cells) weigh_in_full_cells<T, Dim>(step, tile, x, volume, cell_volume, deviator);
+
+    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
+    // workspace's rest.
+    Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
+    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 40 <= workspace_arrays);
+    const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
+    const T per_cell_volume = T(1) / (circle * cell_volume);
+    using R = Record<T>;
     // Four particles at a time; those past the tile's end are rubbish that nothing reads.
     for (int q = 0; q < count; q += record) {
       const R none = {}, m = record_at(mass + q), volumes = record_at(volume + q);

@@ -145,16 +145,33 @@ TEST_F(Duct, QuadraticApicDoesNotDependOnTheStep) {
   EXPECT_LE(std::sqrt(difference / scale), 1e-3);
 }
 
-TEST_F(Duct, InSinglePrecisionItsParticlesKeepTheirVolumeAndSpeed) {
-  // Round-off disturbs the lattice. While overlaps were taken back in ducts too, the particles shrank on that
-  // noise, with nowhere to expand to, and the plug ran 3 % too fast: L2 3.6e-2. Measured 4.8e-3.
+TEST_F(Duct, JitteredParticlesMatchTheExactProfile) {
+  // Measured 3.2e-4, 6.8e-4, 3.1e-3 and 2.5e-3; seeds 2 to 4 at 100 and 200 Pa 1.9e-3 to 2.7e-3. With the
+  // particles' own volumes for their shear stress (mpm/transfer/full_cells.h) up to 5.5e-3 and 7.9e-3.
+  for (const double yield : {10.0, 50.0, 100.0, 200.0}) {
+    const auto run = run_and_read(
+        duct({setting("material.yield_stress", yield), "time.end=12", "mpm.seeding=jittered", "mpm.seed=1"}),
+        "yield " + std::to_string(yield));
+    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
+    EXPECT_LE(error, 5e-3) << yield << " Pa";
+  }
+}
+
+TEST_F(Duct, ItsLatticeStaysOneInSinglePrecisionToo) {
+  // Round-off disturbs the lattice, and disorder used to grow from it by e^1.7 a second: the plug ran 1 % too
+  // fast from 12 s on (float) or 30 s (double). Measured at 30 s 1.1e-3, in float at 15 s 1.5e-3.
   const double yield = 100.0;
-  const auto run = run_and_read(duct({setting("material.yield_stress", yield), "mpm.precision=float",
-                                      "mpm.cell=0.0125", "time.end=12", "output.checkpoint_interval=12"}),
-                                "float");
-  const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
-  std::printf("    L2 %.2g\n", error);
-  EXPECT_LT(error, 1e-2);
+  for (const auto& [precision, end] : {std::pair{"double", 30}, std::pair{"float", 15}}) {
+    const auto run =
+        run_and_read(duct({setting("material.yield_stress", yield), "mpm.cell=0.0125",
+                           fmt::format("mpm.precision={}", precision), fmt::format("time.end={}", end),
+                           "forces.body_force=[[0.0, 2000.0]]"}),
+                     precision);
+    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    std::printf("    %s, %d s: L2 %.2g\n", precision, end, error);
+    EXPECT_LT(error, 2e-3) << precision;
+  }
 }
 
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
