@@ -38,7 +38,7 @@ struct StepParameters {
   T density_correction{};  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit
                            ///< strain
   bool filling_matters = true;  ///< there are free surfaces, and B-bar is by average
-  bool full_cells = false;      ///< every cell is full and stays so
+  bool full_cells = false;      ///< there are none, and B-bar is by average
   FlowParameters<T> flow;
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;

@@ -87,7 +87,6 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
   s.density_correction = density_correction(scene);
   s.free_surface = scene.kind != scenes::Kind::duct;
-  s.full_cells = scene.kind == scenes::Kind::duct && !paper;
   s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
   s.flow.plastic_viscosity = m.plastic_viscosity;
   s.flow.regularisation_time = m.regularisation_time.value_or(0.0);

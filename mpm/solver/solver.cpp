@@ -158,8 +158,9 @@ class SolverOf final : public Solver {
     p.dilatation = settings.b_bar();
     p.explicit_fluid = settings.explicit_fluid;
     p.density_correction = static_cast<T>(settings.density_correction);
-    p.filling_matters = settings.free_surface && p.dilatation != Dilatation::centroid;
-    p.full_cells = settings.full_cells;
+    const bool as_published = p.dilatation == Dilatation::centroid;
+    p.filling_matters = settings.free_surface && !as_published;
+    p.full_cells = !settings.free_surface && !as_published;
     for (std::size_t a = 0; a < 3; ++a) p.bounds[a] = settings.bounds[a];
     // Relative to the mass of a full cell (on the axis' own ring where axisymmetric), small enough to keep
     // every real contribution and large enough that its inverse stays finite.

@@ -29,8 +29,7 @@ struct SolverSettings {
   double flip_relaxation_time = 0.0;  ///< s; infinite for pure FLIP
   double density_correction =
       0.0;  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit strain
-  bool free_surface = true;
-  bool full_cells = false;  ///< every cell is full and stays so, as a duct's
+  bool free_surface = true;  ///< where there is none, as in a duct, every cell is full and stays so
   FlowParameters<double> flow;
   EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};

@@ -13,17 +13,17 @@
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
 /// Factors of the particles' shear stress, 1 + c0 + c . (x - 1/2) in each cell, with which their volumes sum
-/// over the cell what is constant exactly, and what is linear but for the share that `moment_kept` is of the
-/// spread (a twelfth where particles lie evenly; where all share a coordinate, nothing sums along it). Across
-/// the flow little is kept. Along it rows of particles stream past each other, out of step with the cells:
-/// theirs sum well across cells' borders and are off within each, so that much weight on the cell would
-/// disturb them.
+/// over the cell what is constant exactly. Of what they miss in what is linear along an axis, kept / (kept +
+/// spread) is left, `spread` being a twelfth where they lie evenly, and nought where they share a coordinate
+/// and nothing can be summed. Across the flow that is a tenth. Along it rows of particles stream past each
+/// other, out of step with the cells: theirs sum well across cells' borders and are off within each, so that
+/// all the weight on the cell would disturb them; half is left.
 template <class T, int Dim>
 void factors_of_full_cells(const StepParameters<T>& step, const Tile<T, Dim>& tile, const T* const* x,
                            const T* volume, T cell_volume, T* factor) {
   constexpr int terms = Dim + 1;
-  T moment_kept[Dim];
-  for (int a = 0; a < Dim; ++a) moment_kept[a] = step.bounds[a].periodic ? T(0.1) : T(0.01);
+  T kept[Dim];
+  for (int a = 0; a < Dim; ++a) kept[a] = step.bounds[a].periodic ? T(0.1) : T(0.01);
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
     const int first = tile.cell_first(cell), end = first + tile.cell_count(cell);
     if (first == end) continue;
@@ -33,7 +33,7 @@ void factors_of_full_cells(const StepParameters<T>& step, const Tile<T, Dim>& ti
       for (int i = 0; i < terms; ++i)
         for (int j = i; j < terms; ++j) moment[i][j] += volume[q] * basis(i, q) * basis(j, q);
     for (int i = 0; i < terms; ++i) c[i] = (i == 0 ? cell_volume : T(0)) - moment[0][i];
-    for (int i = 1; i < terms; ++i) moment[i][i] += moment_kept[i - 1] * moment[0][0];
+    for (int i = 1; i < terms; ++i) moment[i][i] += kept[i - 1] * moment[0][0];
     // Symmetric and positive: elimination without pivots.
     for (int i = 0; i < terms; ++i)
       for (int j = i + 1; j < terms; ++j) {

@@ -38,6 +38,11 @@ double l2(const runs::Profile& profile, Exact exact) {
   return std::sqrt(error / scale);
 }
 
+/// The same of a run's last profile, for the steady flow of a Bingham fluid.
+double bingham_error(const runs::Run& run, double yield) {
+  return l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+}
+
 scenes::Scene duct(const std::vector<std::string>& more) {
   return scenes::load_scene("poiseuille-step-down",
                             {with({"mpm.threads=1", "output.snapshot_interval=1000"}, more), {}});
@@ -109,7 +114,7 @@ TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
         duct({setting("material.yield_stress", yield), "time.end=12", "output.checkpoint_interval=12"});
     const std::string name = "yield " + std::to_string(yield);
     const auto run = run_and_read(scene, name);
-    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    const double error = bingham_error(run, yield);
     std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
     EXPECT_LE(error, 1e-3) << name;
     // The plug reaches yield / F from the middle; a cell either side of its edge shares its grid's nodes.
@@ -152,7 +157,7 @@ TEST_F(Duct, JitteredParticlesMatchTheExactProfile) {
     const auto run = run_and_read(
         duct({setting("material.yield_stress", yield), "time.end=12", "mpm.seeding=jittered", "mpm.seed=1"}),
         "yield " + std::to_string(yield));
-    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    const double error = bingham_error(run, yield);
     std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
     EXPECT_LE(error, 5e-3) << yield << " Pa";
   }
@@ -168,22 +173,21 @@ TEST_F(Duct, ItsLatticeStaysOneInSinglePrecisionToo) {
                            fmt::format("mpm.precision={}", precision), fmt::format("time.end={}", end),
                            "forces.body_force=[[0.0, 2000.0]]"}),
                      precision);
-    const double error = l2(run.profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    const double error = bingham_error(run, yield);
     std::printf("    %s, %d s: L2 %.2g\n", precision, end, error);
     EXPECT_LT(error, 2e-3) << precision;
   }
 }
 
 TEST_F(Duct, LinearFlipOnALatticeMatchesTheExactProfile) {
-  // Measured 4.6e-4 at 10 Pa and 7.0e-4 at 200 Pa. How large a step the lattice bears before it breaks up
-  // (1e-2 and more) depends on the plug: at 50, 100 and 200 Pa it holds at CFL 0.1 and not at 0.3, at 10 Pa
-  // at 0.3 and not at 0.1 (3.4e-3).
+  // Measured 4.7e-4 at 10 Pa and 7.1e-4 at 200 Pa. How large a step the lattice bears before it breaks up
+  // (2e-2 and more) depends on the plug: at 10 Pa it holds at CFL 0.3 and 0.1, at 200 Pa at 0.1 only, at 50
+  // and 100 Pa at neither.
   for (const auto& [yield, cfl] : {std::pair{10.0, "0.3"}, std::pair{200.0, "0.1"}}) {
     const auto scene = duct({fmt::format("material.yield_stress={}", yield), "time.end=12",
                              "mpm.scheme=linear-flip", fmt::format("mpm.cfl={}", cfl),
                              "mpm.flip_relaxation_time=1e6", "mpm.particles_per_cell=[1,4]"});
-    const double error =
-        l2(run_and_read(scene).profiles.back(), [&](double y) { return exact_velocity(y, yield); });
+    const double error = bingham_error(run_and_read(scene), yield);
     std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
     EXPECT_LE(error, 1e-3) << yield << " Pa";
   }
