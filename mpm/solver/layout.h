@@ -57,6 +57,7 @@ struct AxisBounds {
 struct Mover {
   std::uint32_t index;  ///< in its block
   std::int8_t shift[3];
+  std::uint8_t cell;  ///< of the block, where it was
 };
 
 /// Sums and extremes of one block over one step, merged in block order so that results do not depend on

@@ -98,7 +98,7 @@ class Particles {
     } else {
       for (auto& array : arrays_)
         for (const auto& move : plan.new_places)
-          std::copy_n(array.data() + move.from, move.count, array.data() + move.to);
+          std::memmove(array.data() + move.to, array.data() + move.from, move.count * sizeof(T));
     }
   }
 
@@ -149,6 +149,7 @@ class Particles {
   void lay_out_anew(const std::vector<SparseBlocks::NewPlace>& moves, std::size_t room, int threads) {
     const auto n = static_cast<std::int64_t>(moves.size());
     for (std::size_t k = 0; k < arrays_.size(); ++k) {
+      // One array to spare where the room stays: they take turns.
       if (spare_.size() != room) spare_ = AlignedArray<T>(room);
       const T* from = arrays_[k].data();
       T* to = spare_.data();

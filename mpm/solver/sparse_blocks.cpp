@@ -25,11 +25,16 @@ CellIndex local_coordinates(int dimension, int local) {
                         : CellIndex{local / 4, local % 4, 0};
 }
 
-/// Places for a block with so many particles: a few of its neighbours' may come, and blocks begin on cache
-/// lines.
+/// Blocks begin on cache lines.
+constexpr std::uint32_t line = 16;
+/// Blocks that are moved to make room for another, at most.
+constexpr std::size_t farthest_pushed = 16;
+std::uint32_t whole_lines(std::uint32_t places) { return (places + line - 1) / line * line; }
+
+/// Places for a block with so many particles: a few of its neighbours' may come.
 std::uint32_t places_for(std::uint32_t count) {
-  constexpr std::uint32_t least_spare = 8, line = 16;
-  return (count + count / 16 + least_spare + line - 1) / line * line;
+  constexpr std::uint32_t least_spare = 8;
+  return whole_lines(count + count / 16 + least_spare);
 }
 
 }  // namespace
@@ -125,41 +130,117 @@ std::vector<std::uint32_t> SparseBlocks::build(const std::vector<CellIndex>& cel
   return places;
 }
 
-/// Gives every block its places anew, in the order of the blocks, with room for what comes to it now.
-void SparseBlocks::lay_out() {
-  std::vector<std::uint32_t> in_order;
-  for (std::size_t s = 0; s < slots_.size(); ++s) {
-    Slot& slot = slots_[s];
-    slot.room = 0;
-    if (std::max(slot.count(), slot.count_to_come) > 0) in_order.push_back(static_cast<std::uint32_t>(s));
-  }
-  std::sort(in_order.begin(), in_order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
-  relocation_.laid_out_anew = true;
-  relocation_.new_places.clear();
-  used_ = 0;
-  for (const auto s : in_order) {
-    Slot& slot = slots_[s];
-    const auto to = static_cast<std::uint32_t>(used_);
-    if (slot.count() > 0) relocation_.new_places.push_back({slot.first, to, slot.count()});
-    slot.first = to;
-    slot.room = places_for(std::max(slot.count(), slot.count_to_come));
-    used_ += slot.room;
-  }
-  constexpr std::size_t least_spare = 256;
-  room_ = used_ + used_ / 32 + least_spare;
+std::uint32_t SparseBlocks::places_needed(std::uint32_t slot) const {
+  // Those that are there lie there until the block is put in order.
+  const Slot& s = slots_[slot];
+  return s.to_come() > 0 ? whole_lines(std::max(s.count(), s.to_come())) : 0;
 }
 
-/// Moves one block that has outgrown its places, or has none, behind all others; false where there is no
-/// room.
-bool SparseBlocks::move_to_the_end(Slot& slot) {
-  const std::uint32_t room = places_for(slot.count_to_come);
-  if (used_ + room > room_) return false;
-  const auto to = static_cast<std::uint32_t>(used_);
-  if (slot.count() > 0) relocation_.new_places.push_back({slot.first, to, slot.count()});
+/// Where the places of the block that lies at `rank` in the arrays end: where the next one begins.
+std::uint32_t SparseBlocks::places_end(std::size_t rank) const {
+  return rank + 1 < in_memory_.size() ? slots_[in_memory_[rank + 1]].first : room_;
+}
+
+std::uint32_t SparseBlocks::places_to_spare(std::size_t rank) const {
+  const std::uint32_t has = places_end(rank) - slots_[in_memory_[rank]].first;
+  return has - std::min(has, places_needed(in_memory_[rank]));
+}
+
+std::size_t SparseBlocks::rank_in_memory(std::uint32_t slot) const {
+  const auto at =
+      std::lower_bound(in_memory_.begin(), in_memory_.end(), slots_[slot].first,
+                       [&](std::uint32_t s, std::uint32_t first) { return slots_[s].first < first; });
+  return static_cast<std::size_t>(at - in_memory_.begin());
+}
+
+/// Gives every block its places anew, in the order of the blocks, with room for what comes to it now, and
+/// shares out what is left. The arrays keep their size where that does.
+void SparseBlocks::lay_out() {
+  in_memory_.clear();
+  std::size_t wanted = 0;
+  for (std::uint32_t s = 0; s < slots_.size(); ++s) {
+    const std::uint32_t needed = places_needed(s);
+    if (needed == 0) continue;
+    in_memory_.push_back(s);
+    wanted += places_for(needed);
+  }
+  std::sort(in_memory_.begin(), in_memory_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
+  constexpr std::size_t least_spare = 256;
+  if (room_ < wanted || room_ > wanted + wanted / 16 + 2 * least_spare)
+    room_ = whole_lines(static_cast<std::uint32_t>(wanted + wanted / 32 + least_spare));
+  relocation_.laid_out_anew = true;
+  relocation_.new_places.clear();
+  const std::size_t spare = room_ - wanted;
+  std::uint32_t used = 0;
+  for (std::size_t rank = 0; rank < in_memory_.size(); ++rank) {
+    const std::uint32_t s = in_memory_[rank];
+    const auto to = used + static_cast<std::uint32_t>(spare * rank / in_memory_.size()) / line * line;
+    if (slots_[s].count() > 0) relocation_.new_places.push_back({slots_[s].first, to, slots_[s].count()});
+    used += places_for(places_needed(s));
+    slots_[s].first = to;
+  }
+}
+
+void SparseBlocks::move_block(std::size_t rank, std::uint32_t to) {
+  Slot& slot = slots_[in_memory_[rank]];
+  if (slot.first == to) return;
+  moved_.push_back({in_memory_[rank], slot.first});
+  relocation_.new_places.push_back({slot.first, to, slot.count()});
   slot.first = to;
-  slot.room = room;
-  used_ += room;
+}
+
+/// Sees to it that a block has places for what comes to it; false where none are near.
+bool SparseBlocks::make_room(std::uint32_t slot) {
+  if (slots_[slot].to_come() == 0) return true;
+  if (slots_[slot].count() == 0) return find_places(slot);
+  const std::size_t rank = rank_in_memory(slot);
+  const std::uint32_t has = places_end(rank) - slots_[slot].first, needed = places_needed(slot);
+  return needed <= has || push(rank, needed - has, Side::behind) || push(rank, needed - has, Side::before);
+}
+
+/// Puts a new block where there is most to spare.
+bool SparseBlocks::find_places(std::uint32_t slot) {
+  std::size_t best = 0;
+  std::uint32_t most = 0;
+  for (std::size_t rank = 0; rank < in_memory_.size(); ++rank)
+    if (const std::uint32_t spare = places_to_spare(rank); spare > most) {
+      best = rank;
+      most = spare;
+    }
+  const std::uint32_t needed = places_needed(slot);
+  if (most < needed) return false;
+  // Either has half of what is left.
+  slots_[slot].first = places_end(best) - needed - (most - needed) / 2 / line * line;
+  in_memory_.insert(in_memory_.begin() + static_cast<std::ptrdiff_t>(best) + 1, slot);
+  return true;
+}
+
+/// Moves the blocks behind one, or it and those before it, to where there are places to spare, so that it has
+/// at least `missing` more; false where there are too few within reach.
+bool SparseBlocks::push(std::size_t rank, std::uint32_t missing, Side side) {
+  const std::size_t in_reach =
+      std::min<std::size_t>(farthest_pushed, side == Side::behind ? in_memory_.size() - rank - 1 : rank + 1);
+  const auto pushed = [&](std::size_t i) { return side == Side::behind ? rank + 1 + i : rank - i; };
+  /// What is free beyond, so that the next needs to be pushed less far.
+  const auto beyond = [&](std::size_t i) {
+    if (side == Side::behind) return places_to_spare(pushed(i));
+    return pushed(i) > 0 ? places_to_spare(pushed(i) - 1) : slots_[in_memory_.front()].first;
+  };
+  const std::uint32_t needed = places_needed(in_memory_[rank]),
+                      wanted = missing + places_for(needed) - needed;
+  std::array<std::uint32_t, farthest_pushed> distance{};
+  std::size_t count = 0;
+  std::uint32_t left = wanted;
+  for (; count < in_reach && left > 0; ++count) {
+    distance[count] = left;
+    left -= std::min(left, (beyond(count) + line) / 2 / line * line);  // half of it stays
+  }
+  if (wanted - left < missing) return false;
+  for (std::size_t i = count; i-- > 0;) {
+    const std::uint32_t first = slots_[in_memory_[pushed(i)]].first, by = distance[i] - left;
+    move_block(pushed(i), side == Side::behind ? first + by : first - by);
+  }
   return true;
 }
 
@@ -190,10 +271,7 @@ void SparseBlocks::touch(std::uint32_t slot) {
 }
 
 void SparseBlocks::plan_mover(std::uint32_t slot, const Mover& mover) {
-  const auto& start = slots_[slot].start;
-  const int before =
-      static_cast<int>(std::upper_bound(start.begin(), start.end(), mover.index) - start.begin()) - 1;
-  CellIndex inside = local_coordinates(dimension_, before);
+  CellIndex inside = local_coordinates(dimension_, mover.cell);
   auto block = slots_[slot].block;
   for (int a = 0; a < axes(); ++a) {
     const auto i = static_cast<std::size_t>(a);
@@ -211,9 +289,10 @@ void SparseBlocks::plan_mover(std::uint32_t slot, const Mover& mover) {
   wrap(block);
   const int after = local_index(dimension_, inside);
   const bool departs = block != slots_[slot].block;
-  if (!departs && after == before) return;
+  if (!departs && after == mover.cell) return;
   touch(slot);
-  slots_[slot].changes.push_back({mover.index, departs ? no_cell : static_cast<std::uint8_t>(after)});
+  slots_[slot].changes.push_back(
+      {mover.index, mover.cell, departs ? no_cell : static_cast<std::uint8_t>(after)});
   if (!departs) return;
   --slots_[slot].count_to_come;
   const std::uint32_t to = ensure_slot(block);
@@ -221,7 +300,7 @@ void SparseBlocks::plan_mover(std::uint32_t slot, const Mover& mover) {
   touch(to);
   ++slots_[to].count_to_come;
   slots_[to].arrivals.push_back(
-      {static_cast<std::uint32_t>(relocation_.departing.size()), static_cast<std::uint8_t>(after)});
+      {static_cast<std::uint32_t>(relocation_.departing.size()), no_cell, static_cast<std::uint8_t>(after)});
   relocation_.departing.push_back(slots_[slot].first + mover.index);
 }
 
@@ -237,16 +316,15 @@ const SparseBlocks::Relocation& SparseBlocks::relocate() {
     const std::uint32_t movers = slots_[slot].sums.movers;
     for (std::uint32_t m = 0; m < movers; ++m) plan_mover(slot, slots_[slot].movers[m]);
   }
-  const auto fits = [&](std::uint32_t s) {
-    return slots_[s].count_to_come <= slots_[s].room || move_to_the_end(slots_[s]);
-  };
-  if (!std::all_of(touched_.begin(), touched_.end(), fits)) {
-    // What has been moved to the end already has not moved yet.
-    for (const auto& moved : relocation_.new_places)
-      for (const auto s : touched_)
-        if (slots_[s].first == moved.to) slots_[s].first = moved.from;
+  for (const auto slot : touched_)
+    if (slots_[slot].count_to_come == 0)
+      in_memory_.erase(in_memory_.begin() + static_cast<std::ptrdiff_t>(rank_in_memory(slot)));
+  if (!std::all_of(touched_.begin(), touched_.end(), [&](std::uint32_t s) { return make_room(s); })) {
+    // Nothing has moved yet.
+    for (auto m = moved_.rbegin(); m != moved_.rend(); ++m) slots_[m->slot].first = m->first;
     lay_out();
   }
+  moved_.clear();
   for (const auto slot : touched_) {
     Slot& s = slots_[slot];
     plan_reordering(s);
@@ -288,10 +366,8 @@ void SparseBlocks::plan_reordering(Slot& s) {
     heads[cell] = static_cast<std::uint32_t>(i);
     ++size[cell];
   };
-  std::size_t cell = 63;
   for (std::size_t i = s.changes.size(); i-- > 0;) {
-    while (before[cell] > s.changes[i].from) --cell;
-    --size[cell];
+    --size[s.changes[i].old_cell];
     if (s.changes[i].cell != no_cell) list(first_change, i, s.changes[i].cell, i);
   }
   for (std::size_t i = s.arrivals.size(); i-- > 0;)

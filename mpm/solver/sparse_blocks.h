@@ -13,7 +13,8 @@ using CellIndex = std::array<std::int32_t, 3>;  ///< global cell coordinates; th
 
 /// The occupied blocks of the background grid, which particles lie in which of their cells, and the
 /// neighbourhoods. Only blocks that hold particles, and those their nodes reach into, exist. The particles of
-/// a block lie side by side in their arrays, in the order of its cells, with some room behind them.
+/// a block lie side by side in their arrays, in the order of its cells, with some room behind them; where a
+/// block outgrows it, those that lie next to it in memory make way.
 /// Everything that matters to an answer (the order of particles within a cell, of blocks in sums) depends on
 /// the history of the motion alone, not on threads or on where a block lies in memory.
 class SparseBlocks {
@@ -38,8 +39,9 @@ class SparseBlocks {
   /// (Particles::make_way, then Particles::settle for every block before its particles are looked at).
   ///
   /// A particle that would pass a plane wall stays in its cell: it is in `held`, at the place where it is
-  /// before anything moves. `departing` particles are to be set aside, in this order; blocks that have
-  /// outgrown their places move to `new_places`, all of them into new arrays of room() where `laid_out_anew`.
+  /// before anything moves. `departing` particles are to be set aside, in this order; blocks that make room
+  /// for each other move to `new_places`, one after the other, or all of them into arrays of room() at once
+  /// where `laid_out_anew`.
   struct Held {
     std::uint32_t place;
     int axis;
@@ -89,16 +91,16 @@ class SparseBlocks {
   std::size_t bytes() const;
 
  private:
-  /// A particle that changes cells within a block (from its index), or arrives (from the departed), or
-  /// departs (to no cell).
+  /// A particle that changes cells within a block (from its index), or arrives (from the departed, out of no
+  /// cell), or departs (to no cell).
   struct Change {
     std::uint32_t from;
-    std::uint8_t cell;
+    std::uint8_t old_cell, cell;
   };
   static constexpr std::uint8_t no_cell = 0xff;
   struct Slot {
     std::array<std::int32_t, 3> block{};  ///< block coordinates
-    std::uint32_t first = 0, room = 0;    ///< places
+    std::uint32_t first = 0;              ///< of its places
     std::uint32_t arena = no_slot;        ///< its rank among the occupied blocks
     std::array<std::uint32_t, 65> start{};
     bool touched = false;
@@ -109,6 +111,7 @@ class SparseBlocks {
     BlockSums sums;
     std::array<std::uint32_t, 8> plus{}, minus{};
     std::uint32_t count() const { return start[64]; }
+    std::uint32_t to_come() const { return touched ? count_to_come : count(); }
   };
 
   std::uint32_t slot_at(const std::array<std::int32_t, 3>& block) const;
@@ -120,7 +123,15 @@ class SparseBlocks {
   void plan_reordering(Slot&);
   static void add_piece(Reordering&, std::uint32_t from, std::uint32_t to, std::uint32_t count);
   void lay_out();
-  bool move_to_the_end(Slot&);
+  std::uint32_t places_needed(std::uint32_t slot) const;
+  std::uint32_t places_end(std::size_t rank) const;
+  std::uint32_t places_to_spare(std::size_t rank) const;
+  std::size_t rank_in_memory(std::uint32_t slot) const;
+  void move_block(std::size_t rank, std::uint32_t to);
+  bool make_room(std::uint32_t slot);
+  bool find_places(std::uint32_t slot);
+  enum class Side { before, behind };
+  bool push(std::size_t rank, std::uint32_t missing, Side);
   void refresh_neighbours();
   int axes() const { return dimension_; }
 
@@ -133,7 +144,12 @@ class SparseBlocks {
   Relocation relocation_;
   std::vector<std::uint32_t> links_;  ///< from one change of a block to the next that goes to the same cell
   bool occupancy_changed_ = false;
-  std::size_t room_ = 0, used_ = 0;  ///< places of the arrays, and up to where they are given to blocks
+  std::uint32_t room_ = 0;                ///< places of the arrays
+  std::vector<std::uint32_t> in_memory_;  ///< blocks with places, which reach to the next one's
+  struct Moved {
+    std::uint32_t slot, first;
+  };
+  std::vector<Moved> moved_;  ///< blocks that are about to, and where they lie
   std::size_t fullest_cell_ = 0;
 };
 

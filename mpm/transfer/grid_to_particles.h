@@ -149,12 +149,12 @@ void update_stress(const StepParameters<T>& step, const ParticleView<T>& particl
   sums.largest_pressure = maximum(sums.largest_pressure, static_cast<double>(largest_pressure));
 }
 
-/// Notes a particle that left its cell, and puts it where it belongs in the next one.
+/// Notes a particle that left a cell, and puts it where it belongs in the next one.
 template <class T, int Dim, class Shape>
-void note_mover(Tile<T, Dim>& tile, T* const* x, int q) {
+void note_mover(Tile<T, Dim>& tile, int cell, T* const* x, int q) {
   BlockSums& sums = *tile.block.sums;
   constexpr T below_one = sizeof(T) == 8 ? T(1 - 0x1p-53) : T(1 - 0x1p-24f);
-  Mover mover{static_cast<std::uint32_t>(tile.first + q), {0, 0, 0}};
+  Mover mover{static_cast<std::uint32_t>(tile.first + q), {0, 0, 0}, static_cast<std::uint8_t>(cell)};
   for (int a = 0; a < Dim; ++a) {
     T& to = x[a][q];
     if (to >= T(0) && to < T(1)) continue;
@@ -191,8 +191,12 @@ void move_particles(const StepParameters<T>& step, Tile<T, Dim>& tile, T* const*
     largest_speed = largest_speed > square ? largest_speed : square;
   }
   if (tile.block.walls) keep_out_of_walls<T, Dim>(step, tile, largest_speed * per_step * per_step, x, left);
-  for (int q = 0; q < count; ++q)
-    if (left[q] != T(0)) note_mover<T, Dim, Shape>(tile, x, q);
+  int cell = tile.first_cell;
+  for (int q = 0; q < count; ++q) {
+    if (left[q] == T(0)) continue;
+    while (tile.cell_first(cell + 1) <= q) ++cell;
+    note_mover<T, Dim, Shape>(tile, cell, x, q);
+  }
   BlockSums& sums = *tile.block.sums;
   sums.momentum += static_cast<double>(momentum);
   sums.largest_speed_squared = maximum(sums.largest_speed_squared, static_cast<double>(largest_speed));
