@@ -28,6 +28,10 @@ struct RecordOf<float, 8, true> {
   typedef float type __attribute__((vector_size(32), aligned(4), may_alias));
 };
 template <>
+struct RecordOf<float, 16, true> {
+  typedef float type __attribute__((vector_size(64), aligned(4), may_alias));
+};
+template <>
 struct RecordOf<double, 2, true> {
   typedef double type __attribute__((vector_size(16), aligned(8), may_alias));
 };
@@ -121,5 +125,57 @@ FLOWREST_INLINE void transpose(Record<T> (&rows)[4]) {
     rows[3] = {second(a.high, b.high), second(c.high, d.high)};
   }
 }
+
+/// The records of four particles, each of four numbers: in one register where it is wide enough.
+template <class T, bool Fits = fits_register<T, 16>>
+struct FourRecords {
+  Record<T> of[4];
+
+  /// From each number's values for the four particles.
+  FLOWREST_INLINE FourRecords(const Record<T>& a, const Record<T>& b, const Record<T>& c, const Record<T>& d)
+      : of{a, b, c, d} {
+    transpose<T>(of);
+  }
+  /// Every particle's record times its own factor.
+  FLOWREST_INLINE FourRecords times(const T* factors) const {
+    FourRecords out = *this;
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n) out.of[n] *= factors[n];
+    return out;
+  }
+  /// Particle by particle, its record of `first` before that of `second`.
+  static FLOWREST_INLINE void write_pairs(T* to, const FourRecords& first, const FourRecords& second) {
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n) {
+      record_at(to + 8 * n) = first.of[n];
+      record_at(to + 8 * n + 4) = second.of[n];
+    }
+  }
+};
+
+template <class T>
+struct FourRecords<T, true> {
+  Record<T, 16> all;
+
+  FLOWREST_INLINE FourRecords(const Record<T>& a, const Record<T>& b, const Record<T>& c,
+                              const Record<T>& d) {
+    const Record<T, 8> ab = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    const Record<T, 8> cd = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7);
+    all = __builtin_shufflevector(ab, cd, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+  }
+  FLOWREST_INLINE FourRecords times(const T* factors) const {
+    // Read as a whole register, of which the first four count: the compiler widens a narrow one in memory.
+    const Record<T, 16>& f = record_at<16>(factors);
+    FourRecords out = *this;
+    out.all *= __builtin_shufflevector(f, f, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    return out;
+  }
+  static FLOWREST_INLINE void write_pairs(T* to, const FourRecords& first, const FourRecords& second) {
+    const Record<T, 16>&a = first.all, &b = second.all;
+    record_at<16>(to) = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+    record_at<16>(to + 16) =
+        __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
+  }
+};
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

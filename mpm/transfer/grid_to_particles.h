@@ -300,7 +300,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
   load_arena<T, Dim, Linear>(step, block, grid.nodes, arena);
   T* remapped = grid.arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
   for (int i = 0; i < nodes_per_arena<Dim> * node_values; ++i) remapped[i] = T(0);
-  using Momentum = Source<T, Dim, 0, record>;
+  using Momentum = Sources<T, Dim, 0, record>;
   Tile<T, Dim> tile(block, workspace);
   while (tile.next()) {
     T *x[Dim], *v[Dim];
@@ -318,7 +318,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       gather<T, Dim, Linear, node_values, Wanted{}>(field, 1, x, T(1), first, n, motion, nullptr);
       gather<T, Dim, Linear, node_values, Wanted{}>(field, record + 1, x, T(1), first, n, increment, nullptr);
     }
-    Momentum* momentum = reinterpret_cast<Momentum*>(tile.memory + tile.capacity * tile.used);
+    const Momentum momentum(tile.memory + tile.capacity * tile.used, tile.capacity);
     for (int c = 0; c < Dim; ++c) {
       relax(step.keep, increment.value[c], v[c], tile.count);
       tile.write(particles.advection[c], motion.value[c]);
@@ -329,7 +329,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       Record<T> value[4] = {m, m * record_at(v[0] + q), m * record_at(v[1] + q), Record<T>{}};
       if constexpr (Dim == 3) value[3] = m * record_at(v[2] + q);
       transpose<T>(value);
-      for (int n = 0; n < record; ++n) record_at(momentum[q + n].value) = value[n];
+      for (int n = 0; n < record; ++n) record_at(momentum.of_value(q + n)) = value[n];
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)

@@ -9,19 +9,23 @@
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// One particle's contribution to the node records around it: the product of the axes' weights times
-/// `value`, and for every axis `term`, which takes the place of that axis' weight in the product and `value`:
-/// for its first and last node what the particle brings beyond the plain weight (weight and offset times the
-/// affine part, slope times the stress). Over an axis' nodes terms sum to nothing, so that linear functions
-/// need one side's, that of the last node; without sides there are none.
+/// What a tile's particles bring to the node records around them, `Values` numbers at a time, in arrays of
+/// one record a particle: the product of the axes' weights times `value`, and for every axis `term`, which
+/// takes the place of that axis' weight in the product and `value`: for its first and last node what the
+/// particle brings beyond the plain weight (weight and offset times the affine part, slope times the stress).
+/// Over an axis' nodes terms sum to nothing, so that linear functions need one side's, that of the last node;
+/// without sides there are none.
 template <class T, int Dim, int Sides, int Values>
-struct Source {
-  T value[Values];
-  T term[Dim][Sides][Values];
-};
-template <class T, int Dim, int Values>
-struct Source<T, Dim, 0, Values> {
-  T value[Values];
+struct Sources {
+  static constexpr int arrays = 1 + Dim * Sides;
+  T* value;
+  int stride;  ///< from one array to the next
+
+  explicit Sources(T* memory, int capacity) : value(memory), stride(capacity * Values) {}
+  FLOWREST_INLINE T* of_value(int q) const { return value + q * Values; }
+  FLOWREST_INLINE T* of_term(int axis, int side, int q) const {
+    return value + (1 + axis * Sides + side) * stride + q * Values;
+  }
 };
 template <class Shape>
 constexpr int term_sides = Shape::nodes - 1;
@@ -62,7 +66,7 @@ constexpr int side_of(int function) {
 /// Sums one slab, that of function `I` of the first axis, over the particles [first, first + count) of a
 /// cell. The sums stay in registers.
 template <class T, int Dim, class Shape, int Sides, int Values, int I>
-FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const Weights<T, Dim, Shape>& w,
+FLOWREST_INLINE void sum_slab(const Sources<T, Dim, Sides, Values>& source, const Weights<T, Dim, Shape>& w,
                               int first, int count, Slab<T, Dim, Shape, Values>& slab) {
   constexpr int nodes = Shape::nodes, rows = slab.rows, last = Dim - 1;
   constexpr bool plain = is_plain<Shape>(I);
@@ -73,22 +77,21 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const
 #pragma GCC unroll 3
     for (int k = 0; k < nodes; ++k) sum[j][k] = R{};
   for (int q = first; q < first + count; ++q) {
-    const auto& s = source[q];
-    R here = record_at<Values>(s.value), row[2], along[2];
+    R here = record_at<Values>(source.of_value(q)), row[2], along[2];
     if constexpr (!plain) here *= w.weight[0][side_of<Shape>(I)][q];
     if constexpr (Sides > 0) {
       if constexpr (!plain) {
         R across[2];
-        for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(s.term[0][side]);
+        for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(source.of_term(0, side, q));
         add_term<T, Sides, Values>(here, across, side_of<Shape>(I));
       }
 #pragma GCC unroll 2
       for (int side = 0; side < Sides; ++side) {
         if constexpr (Dim == 3) {
-          row[side] = record_at<Values>(s.term[1][side]);
+          row[side] = record_at<Values>(source.of_term(1, side, q));
           if constexpr (!plain) row[side] *= w.weight[0][side_of<Shape>(I)][q];
         }
-        along[side] = record_at<Values>(s.term[last][side]);
+        along[side] = record_at<Values>(source.of_term(last, side, q));
         if constexpr (!plain) along[side] *= w.weight[0][side_of<Shape>(I)][q];
       }
     }
@@ -133,7 +136,7 @@ FLOWREST_INLINE void sum_slab(const Source<T, Dim, Sides, Values>* source, const
 
 /// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
 template <class T, int Dim, class Shape, int Sides, int Values>
-void scatter(T* arena_cell, const Source<T, Dim, Sides, Values>* source, const Weights<T, Dim, Shape>& w,
+void scatter(T* arena_cell, const Sources<T, Dim, Sides, Values>& source, const Weights<T, Dim, Shape>& w,
              int first, int count) {
   constexpr int nodes = Shape::nodes;
   Slab<T, Dim, Shape, Values> slabs[nodes];
@@ -151,15 +154,6 @@ void scatter(T* arena_cell, const Source<T, Dim, Sides, Values>* source, const W
     }
 }
 
-template <class T>
-FLOWREST_INLINE void set_rows(Record<T> (&rows)[4], const Record<T>& a, const Record<T>& b,
-                              const Record<T>& c, const Record<T>& d) {
-  rows[0] = a;
-  rows[1] = b;
-  rows[2] = c;
-  rows[3] = d;
-}
-
 /// Mass, momentum, volume and the impulse of the step's forces of one block's particles, into that block's
 /// arena: per node (mass, momentum) and (filling, impulse).
 template <class T, int Dim, bool Axisymmetric, class Shape>
@@ -168,7 +162,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
   constexpr bool affine = Shape::nodes == 3;  // the quadratic functions carry APIC's affine part
   constexpr int arena_values = nodes_per_arena<Dim> * node_values;
   constexpr int sides = term_sides<Shape>;
-  using Sources = Source<T, Dim, sides, node_values>;
+  using TileSources = Sources<T, Dim, sides, node_values>;
   T* arena = grid.arenas + static_cast<std::size_t>(block.arena) * arena_values;
   for (int i = 0; i < arena_values; ++i) arena[i] = T(0);
 
@@ -183,7 +177,6 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
     for (int a = 0; a < Dim; ++a) x[a] = tile.open(particles.position[a]);
     const T* mass = tile.open(particles.mass);
     const T* ratio = tile.open(particles.volume_ratio);
-    const T* raw_pressure = tile.open(particles.pressure);
     Weights<T, Dim, Shape> weights;
     weights.make(tile, x);
 
@@ -191,15 +184,14 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
     T* pressure = tile.fresh();
     const T per_density = T(1) / step.density;
 #pragma omp simd
-    for (int q = 0; q < count; ++q) {
-      volume[q] = mass[q] * ratio[q] * per_density;
-      pressure[q] = raw_pressure[q];
-    }
+    for (int q = 0; q < count; ++q) volume[q] = mass[q] * ratio[q] * per_density;
     const bool centroid = step.dilatation == Dilatation::centroid;
     if (smooth) {
       gather_average<T, Dim>(tile, averaged, x, pressure);
-    } else if (!centroid) {
-      average_over_cells(tile, volume, pressure);
+    } else {
+      const T* raw_pressure = tile.open(particles.pressure);
+      for (int q = 0; q < count; ++q) pressure[q] = raw_pressure[q];
+      if (!centroid) average_over_cells(tile, volume, pressure);
     }
 
     T* per_radius = nullptr;
@@ -238,10 +230,9 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
     const T cell_volume = (Dim == 3 ? step.cell : T(1)) * step.cell * step.cell;
     if (step.full_cells) weigh_in_full_cells<T, Dim>(step, tile, x, volume, cell_volume, deviator);
 
-    // Sources are an array of structures: each is read whole, broadcast over a cell's nodes. They take the
-    // workspace's rest.
-    Sources* sources = reinterpret_cast<Sources*>(tile.memory + tile.capacity * tile.used);
-    static_assert(static_cast<int>(sizeof(Sources) / sizeof(T)) + 40 <= workspace_arrays);
+    // Each is read whole, broadcast over a cell's nodes. They take the workspace's rest.
+    const TileSources sources(tile.memory + tile.capacity * tile.used, tile.capacity);
+    static_assert(TileSources::arrays * node_values + 40 <= workspace_arrays);
     const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
     const T per_cell_volume = T(1) / (circle * cell_volume);
     using R = Record<T>;
@@ -251,48 +242,34 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       const R p = centroid ? none : record_at(pressure + q);
       const R xx = record_at(deviator[0] + q), yy = record_at(deviator[1] + q),
               xy = record_at(deviator[2] + q);
-      R value[4] = {m, m * record_at(v[0] + q), m * record_at(v[1] + q), none};
-      R forcing[4] = {volumes * per_cell_volume, none, none, none};
-      R stress[Dim][4];
-      if constexpr (Dim == 3) {
-        const R xz = record_at(deviator[3] + q), yz = record_at(deviator[4] + q);
-        value[3] = m * record_at(v[2] + q);
-        set_rows<T>(stress[0], none, xx - p, xy, xz);
-        set_rows<T>(stress[1], none, xy, yy - p, yz);
-        set_rows<T>(stress[2], none, xz, yz, -(xx + yy) - p);
-      } else {
-        set_rows<T>(stress[0], none, xx - p, xy, none);
-        set_rows<T>(stress[1], none, xy, yy - p, none);
-      }
+      R filling = volumes * per_cell_volume, hoop = none;
       if constexpr (Axisymmetric) {
         const R per_radii = record_at(per_radius + q);
-        forcing[0] *= per_radii;
-        forcing[1] = volumes * dt * (xx + yy + p) * per_radii;  // of the hoop stress
+        filling *= per_radii;
+        hoop = volumes * dt * (xx + yy + p) * per_radii;
       }
-      transpose<T>(value);
-      transpose<T>(forcing);
-      for (int n = 0; n < record; ++n) {
-        record_at(sources[q + n].value) = value[n];
-        record_at(sources[q + n].value + record) = forcing[n];
+      using Four = FourRecords<T>;
+      const Four value(m, m * record_at(v[0] + q), m * record_at(v[1] + q),
+                       Dim == 3 ? m * record_at(v[Dim - 1] + q) : none);
+      Four::write_pairs(sources.of_value(q), value, Four(filling, hoop, none, none));
+      R stress[Dim][Dim];
+      stress[0][0] = xx - p;
+      stress[1][1] = yy - p;
+      stress[0][1] = stress[1][0] = xy;
+      if constexpr (Dim == 3) {
+        stress[0][2] = stress[2][0] = record_at(deviator[3] + q);
+        stress[1][2] = stress[2][1] = record_at(deviator[4] + q);
+        stress[2][2] = -(xx + yy) - p;
       }
 #pragma GCC unroll 3
       for (int a = 0; a < Dim; ++a) {
-        transpose<T>(stress[a]);
-        R slants[4] = {none, none, none, none};
-        if constexpr (affine) {
-          slants[1] = record_at(own[0][a] + q);
-          slants[2] = record_at(own[1][a] + q);
-          if constexpr (Dim == 3) slants[3] = record_at(own[2][a] + q);
-          transpose<T>(slants);
-        }
+        const Four pull(none, stress[a][0], stress[a][1], Dim == 3 ? stress[a][Dim - 1] : none);
+        const auto own_of = [&](int c) { return affine ? record_at(own[c][a] + q) : none; };
+        const Four slope(none, own_of(0), own_of(1), Dim == 3 ? own_of(Dim - 1) : none);
 #pragma GCC unroll 2
         for (int side = 0; side < sides; ++side)
-#pragma GCC unroll 4
-          for (int n = 0; n < record; ++n) {
-            T* const term = sources[q + n].term[a][side];
-            record_at(term + record) = push[a][side][q + n] * stress[a][n];
-            record_at(term) = affine ? slant[a][side][q + n] * slants[n] : none;
-          }
+          Four::write_pairs(sources.of_term(a, side, q), affine ? slope.times(slant[a][side] + q) : slope,
+                            pull.times(push[a][side] + q));
       }
     }
 
