@@ -5,13 +5,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
-#include <thread>
 
+#include "foamCases/test_interrupt.h"
 #include "foamCases/test_scene.h"
 
 namespace flowrest::foam {
@@ -217,24 +215,15 @@ TEST_F(FakeOpenFoam, GoingOnKeepsWhatTheRunHasBehindIt) {
   EXPECT_TRUE(fs::exists(options_.directory / "case" / "log.interFoam.1"));
 }
 
-/// Sends this process an interrupt once the run's solver has begun.
-std::thread interrupt_when_begun(const fs::path& log) {
-  return std::thread([log] {
-    for (int i = 0; i < 500; ++i) {
-      std::error_code ignored;
-      if (fs::exists(log, ignored) && fs::file_size(log, ignored) > 0) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    kill(getpid(), SIGINT);
-  });
+/// Once the run's solver has begun.
+std::jthread interrupt_when_begun(const fs::path& log) {
+  return testing::interrupt_at(log, 0, std::chrono::milliseconds(100));
 }
 
 TEST_F(FakeOpenFoam, AnInterruptLetsTheSolverEndItsStep) {
   program("interFoam", "trap 'echo End; exit 0' USR2\n" + step(0.5, 0.5) + "while :; do sleep 0.05; done");
-  auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
+  const auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
   const auto outcome = run_scene(scene_, options_);
-  interrupt.join();
   EXPECT_EQ(outcome.status, runs::Status::interrupted);
   const auto run = runs::read_run(options_.directory);
   EXPECT_EQ(run.info["status"], "interrupted");
@@ -245,9 +234,8 @@ TEST_F(FakeOpenFoam, AnInterruptLetsTheSolverEndItsStep) {
 TEST_F(FakeOpenFoam, ASolverThatDoesNotStopIsMadeTo) {
   options_.grace = 0.2;
   program("interFoam", "trap '' USR2 TERM\n" + step(0.5, 0.5) + "while :; do sleep 0.05; done");
-  auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
+  const auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
   const auto outcome = run_scene(scene_, options_);
-  interrupt.join();
   EXPECT_EQ(outcome.status, runs::Status::interrupted);
 }
 

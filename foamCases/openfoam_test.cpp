@@ -1,18 +1,15 @@
 // Runs of the real interFoam, short and coarse; skipped where OpenFOAM is not installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/slump_sampler.h"
+#include "foamCases/test_interrupt.h"
 #include "foamCases/test_scene.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/depth.h"
@@ -118,22 +115,9 @@ TEST_F(OpenFoam, PapanastasiouAndBiViscousAgreeWhileTheConcreteFlows) {
   EXPECT_GT(newtonian, first + 3.0);
 }
 
-/// Interrupts this process once a run has so many rows of history.
-std::thread interrupt_at(const fs::path& history, std::size_t bytes) {
-  return std::thread([history, bytes] {
-    for (int i = 0; i < 3000; ++i) {
-      std::error_code ignored;
-      if (fs::exists(history, ignored) && fs::file_size(history, ignored) > bytes) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    kill(getpid(), SIGINT);
-  });
-}
-
 TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {
-  auto interrupt = interrupt_at(folder_.path() / "run" / "history.csv", 600);
+  const auto interrupt = testing::interrupt_at(folder_.path() / "run" / "history.csv", 600);
   const auto result = run(roussel_slump("papanastasiou", {"foam.cell=0.02"}));
-  interrupt.join();
   EXPECT_EQ(outcome_.status, runs::Status::interrupted);
   EXPECT_EQ(result.info["status"], "interrupted");
   EXPECT_LT(outcome_.time, 60.0);
@@ -159,9 +143,8 @@ TEST_F(OpenFoam, RanksAndInterruptsDoNotChangeTheAnswer) {
   options.directory = folder_.path() / "parts";
   options.quiet = true;
   options.ranks = 2;
-  auto interrupt = interrupt_at(options.directory / "history.csv", 900);
+  const auto interrupt = testing::interrupt_at(options.directory / "history.csv", 900);
   outcome_ = run_scene(scene, options);
-  interrupt.join();
   ASSERT_EQ(outcome_.status, runs::Status::interrupted);
   EXPECT_THAT(outcome_.reason, ::testing::HasSubstr("--resume " + options.directory.string()));
   EXPECT_FALSE(fs::exists(options.directory / "case" / "processor0"));
