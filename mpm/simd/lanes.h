@@ -126,6 +126,21 @@ FLOWREST_INLINE void transpose(Record<T> (&rows)[4]) {
   }
 }
 
+/// Two records of eight in a register of sixteen.
+template <class T>
+FLOWREST_INLINE Record<T, 16> twice(const Record<T, 8>& r) {
+  return __builtin_shufflevector(r, r, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+template <class T>
+FLOWREST_INLINE Record<T, 16> pair_of(T a, T b) {
+  return Record<T, 16>{a, a, a, a, a, a, a, a, b, b, b, b, b, b, b, b};
+}
+template <class T>
+FLOWREST_INLINE Record<T, 8> half_of(const Record<T, 16>& r, int half) {
+  return half == 0 ? __builtin_shufflevector(r, r, 0, 1, 2, 3, 4, 5, 6, 7)
+                   : __builtin_shufflevector(r, r, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
 /// The records of four particles, each of four numbers: in one register where it is wide enough.
 template <class T, bool Fits = fits_register<T, 16>>
 struct FourRecords {
@@ -143,12 +158,13 @@ struct FourRecords {
     for (int n = 0; n < 4; ++n) out.of[n] *= factors[n];
     return out;
   }
-  /// Particle by particle, its record of `first` before that of `second`.
-  static FLOWREST_INLINE void write_pairs(T* to, const FourRecords& first, const FourRecords& second) {
+  /// Every `stride` numbers one particle's record of `first` and then that of `second`.
+  static FLOWREST_INLINE void write_pairs(T* to, int stride, const FourRecords& first,
+                                          const FourRecords& second) {
 #pragma GCC unroll 4
     for (int n = 0; n < 4; ++n) {
-      record_at(to + 8 * n) = first.of[n];
-      record_at(to + 8 * n + 4) = second.of[n];
+      record_at(to + n * stride) = first.of[n];
+      record_at(to + n * stride + 4) = second.of[n];
     }
   }
 };
@@ -170,11 +186,13 @@ struct FourRecords<T, true> {
     out.all *= __builtin_shufflevector(f, f, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
     return out;
   }
-  static FLOWREST_INLINE void write_pairs(T* to, const FourRecords& first, const FourRecords& second) {
+  static FLOWREST_INLINE void write_pairs(T* to, int stride, const FourRecords& first,
+                                          const FourRecords& second) {
     const Record<T, 16>&a = first.all, &b = second.all;
-    record_at<16>(to) = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
-    record_at<16>(to + 16) =
-        __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
+    record_at<8>(to) = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19);
+    record_at<8>(to + stride) = __builtin_shufflevector(a, b, 4, 5, 6, 7, 20, 21, 22, 23);
+    record_at<8>(to + 2 * stride) = __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27);
+    record_at<8>(to + 3 * stride) = __builtin_shufflevector(a, b, 12, 13, 14, 15, 28, 29, 30, 31);
   }
 };
 

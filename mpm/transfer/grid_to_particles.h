@@ -318,7 +318,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       gather<T, Dim, Linear, node_values, Wanted{}>(field, 1, x, T(1), first, n, motion, nullptr);
       gather<T, Dim, Linear, node_values, Wanted{}>(field, record + 1, x, T(1), first, n, increment, nullptr);
     }
-    const Momentum momentum(tile.memory + tile.capacity * tile.used, tile.capacity);
+    const Momentum momentum{tile.memory + tile.capacity * tile.used, tile.capacity};
     for (int c = 0; c < Dim; ++c) {
       relax(step.keep, increment.value[c], v[c], tile.count);
       tile.write(particles.advection[c], motion.value[c]);
@@ -329,7 +329,7 @@ void flip_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
       Record<T> value[4] = {m, m * record_at(v[0] + q), m * record_at(v[1] + q), Record<T>{}};
       if constexpr (Dim == 3) value[3] = m * record_at(v[2] + q);
       transpose<T>(value);
-      for (int n = 0; n < record; ++n) record_at(momentum.of_value(q + n)) = value[n];
+      for (int n = 0; n < record; ++n) record_at(momentum.value(q + n)) = value[n];
     }
     for (int cell = tile.first_cell; cell < tile.last_cell; ++cell)
       if (tile.cell_count(cell) > 0)

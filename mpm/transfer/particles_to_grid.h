@@ -9,22 +9,21 @@
 
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 
-/// What a tile's particles bring to the node records around them, `Values` numbers at a time, in arrays of
-/// one record a particle: the product of the axes' weights times `value`, and for every axis `term`, which
-/// takes the place of that axis' weight in the product and `value`: for its first and last node what the
-/// particle brings beyond the plain weight (weight and offset times the affine part, slope times the stress).
-/// Over an axis' nodes terms sum to nothing, so that linear functions need one side's, that of the last node;
-/// without sides there are none.
+/// What a tile's particles bring to the node records around them, `Values` numbers at a time: the product of
+/// the axes' weights times `value`, and for every axis `term`, which takes the place of that axis' weight in
+/// the product and `value`: for its first and last node what the particle brings beyond the plain weight
+/// (weight and offset times the affine part, slope times the stress). Over an axis' nodes terms sum to
+/// nothing, so that linear functions need one side's, that of the last node; without sides there are none.
 template <class T, int Dim, int Sides, int Values>
 struct Sources {
   static constexpr int arrays = 1 + Dim * Sides;
-  T* value;
-  int stride;  ///< from one array to the next
+  T* memory;
+  int capacity;  ///< particles
 
-  explicit Sources(T* memory, int capacity) : value(memory), stride(capacity * Values) {}
-  FLOWREST_INLINE T* of_value(int q) const { return value + q * Values; }
-  FLOWREST_INLINE T* of_term(int axis, int side, int q) const {
-    return value + (1 + axis * Sides + side) * stride + q * Values;
+  FLOWREST_INLINE T* value(int q) const { return memory + q * Values; }
+  /// Both sides of an axis lie side by side.
+  FLOWREST_INLINE T* term(int axis, int side, int q) const {
+    return memory + ((1 + axis * Sides) * capacity + q * Sides + side) * Values;
   }
 };
 template <class Shape>
@@ -77,21 +76,21 @@ FLOWREST_INLINE void sum_slab(const Sources<T, Dim, Sides, Values>& source, cons
 #pragma GCC unroll 3
     for (int k = 0; k < nodes; ++k) sum[j][k] = R{};
   for (int q = first; q < first + count; ++q) {
-    R here = record_at<Values>(source.of_value(q)), row[2], along[2];
+    R here = record_at<Values>(source.value(q)), row[2], along[2];
     if constexpr (!plain) here *= w.weight[0][side_of<Shape>(I)][q];
     if constexpr (Sides > 0) {
       if constexpr (!plain) {
         R across[2];
-        for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(source.of_term(0, side, q));
+        for (int side = 0; side < Sides; ++side) across[side] = record_at<Values>(source.term(0, side, q));
         add_term<T, Sides, Values>(here, across, side_of<Shape>(I));
       }
 #pragma GCC unroll 2
       for (int side = 0; side < Sides; ++side) {
         if constexpr (Dim == 3) {
-          row[side] = record_at<Values>(source.of_term(1, side, q));
+          row[side] = record_at<Values>(source.term(1, side, q));
           if constexpr (!plain) row[side] *= w.weight[0][side_of<Shape>(I)][q];
         }
-        along[side] = record_at<Values>(source.of_term(last, side, q));
+        along[side] = record_at<Values>(source.term(last, side, q));
         if constexpr (!plain) along[side] *= w.weight[0][side_of<Shape>(I)][q];
       }
     }
@@ -134,11 +133,85 @@ FLOWREST_INLINE void sum_slab(const Sources<T, Dim, Sides, Values>& source, cons
     for (int k = 0; k < nodes; ++k) slab.sum[j][k] = sum[j][k];
 }
 
+/// The same for all three slabs of quadratic functions at once, where a register holds two records, those of
+/// the last axis' first and last node: every source is read once, and all sums stay in registers.
+template <class T, int Dim, int Values>
+void scatter_in_pairs(T* arena_cell, const Sources<T, Dim, 2, Values>& source,
+                      const Weights<T, Dim, Quadratic>& w, int first, int count) {
+  constexpr int rows = Dim == 3 ? 3 : 1, last = Dim - 1;
+  using Pair = Record<T, 2 * Values>;
+  Pair plain[3][rows], outer[3][rows];
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+    for (int j = 0; j < rows; ++j) plain[i][j] = outer[i][j] = Pair{};
+  for (int q = first; q < first + count; ++q) {
+    const Pair ends = pair_of<T>(w.weight[last][0][q], w.weight[last][1][q]);
+    const Pair value = twice<T>(record_at<Values>(source.value(q)));
+    const Pair along = record_at<2 * Values>(source.term(last, 0, q));
+    Pair row[2];
+    if constexpr (Dim == 3)
+      for (int side = 0; side < 2; ++side) row[side] = twice<T>(record_at<Values>(source.term(1, side, q)));
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      Pair here = value, here_row[2] = {row[0], row[1]}, here_along = along;
+      if (!is_plain<Quadratic>(i)) {
+        const T wi = w.weight[0][side_of<Quadratic>(i)][q];
+        here *= wi;
+        here += twice<T>(record_at<Values>(source.term(0, side_of<Quadratic>(i), q)));
+        here_along *= wi;
+        if constexpr (Dim == 3)
+          for (int side = 0; side < 2; ++side) here_row[side] *= wi;
+      }
+#pragma GCC unroll 3
+      for (int j = 0; j < rows; ++j) {
+        Pair line = here, line_along = here_along;
+        if (Dim == 3 && !is_plain<Quadratic>(j)) {
+          const T wj = w.weight[1][side_of<Quadratic>(j)][q];
+          line *= wj;
+          line += here_row[side_of<Quadratic>(j)];
+          line_along *= wj;
+        }
+        plain[i][j] += line;
+        outer[i][j] += ends * line;
+        outer[i][j] += line_along;
+      }
+    }
+  }
+  // From the plain sums to those of the middle nodes.
+  if constexpr (Dim == 3) {
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      plain[i][1] -= plain[i][0] + plain[i][2];
+      outer[i][1] -= outer[i][0] + outer[i][2];
+    }
+  }
+#pragma GCC unroll 3
+  for (int j = 0; j < rows; ++j) {
+    plain[1][j] -= plain[0][j] + plain[2][j];
+    outer[1][j] -= outer[0][j] + outer[2][j];
+  }
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+    for (int j = 0; j < rows; ++j) {
+      const auto low = half_of<T>(outer[i][j], 0), high = half_of<T>(outer[i][j], 1);
+      T* to = arena_cell + arena_index<Dim>(i, j, 0) * node_values;
+      record_at<Values>(to) += low;
+      record_at<Values>(to + node_values) += half_of<T>(plain[i][j], 0) - (low + high);
+      record_at<Values>(to + 2 * node_values) += high;
+    }
+}
+
 /// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
 template <class T, int Dim, class Shape, int Sides, int Values>
 void scatter(T* arena_cell, const Sources<T, Dim, Sides, Values>& source, const Weights<T, Dim, Shape>& w,
              int first, int count) {
   constexpr int nodes = Shape::nodes;
+  if constexpr (Sides == 2 && fits_register<T, 2 * Values>) {
+    scatter_in_pairs<T, Dim, Values>(arena_cell, source, w, first, count);
+    return;
+  }
   Slab<T, Dim, Shape, Values> slabs[nodes];
   sum_slab<T, Dim, Shape, Sides, Values, 0>(source, w, first, count, slabs[0]);
   sum_slab<T, Dim, Shape, Sides, Values, 1>(source, w, first, count, slabs[1]);
@@ -231,7 +304,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
     if (step.full_cells) weigh_in_full_cells<T, Dim>(step, tile, x, volume, cell_volume, deviator);
 
     // Each is read whole, broadcast over a cell's nodes. They take the workspace's rest.
-    const TileSources sources(tile.memory + tile.capacity * tile.used, tile.capacity);
+    const TileSources sources{tile.memory + tile.capacity * tile.used, tile.capacity};
     static_assert(TileSources::arrays * node_values + 40 <= workspace_arrays);
     const T circle = Axisymmetric ? T(6.283185307179586) : T(1);  // particles carry whole rings
     const T per_cell_volume = T(1) / (circle * cell_volume);
@@ -251,7 +324,7 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       using Four = FourRecords<T>;
       const Four value(m, m * record_at(v[0] + q), m * record_at(v[1] + q),
                        Dim == 3 ? m * record_at(v[Dim - 1] + q) : none);
-      Four::write_pairs(sources.of_value(q), value, Four(filling, hoop, none, none));
+      Four::write_pairs(sources.value(q), node_values, value, Four(filling, hoop, none, none));
       R stress[Dim][Dim];
       stress[0][0] = xx - p;
       stress[1][1] = yy - p;
@@ -268,8 +341,8 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
         const Four slope(none, own_of(0), own_of(1), Dim == 3 ? own_of(Dim - 1) : none);
 #pragma GCC unroll 2
         for (int side = 0; side < sides; ++side)
-          Four::write_pairs(sources.of_term(a, side, q), affine ? slope.times(slant[a][side] + q) : slope,
-                            pull.times(push[a][side] + q));
+          Four::write_pairs(sources.term(a, side, q), sides * node_values,
+                            affine ? slope.times(slant[a][side] + q) : slope, pull.times(push[a][side] + q));
       }
     }
 
