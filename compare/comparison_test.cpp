@@ -93,6 +93,7 @@ TEST_F(ComparisonTest, MeasuresWhatTheFormulaSays) {
   EXPECT_NEAR(*creep.residual, 2e-4, 1e-5);
   EXPECT_NEAR(*creep.predicted_creep, 6.9e-4, 1e-5);
   EXPECT_EQ(creep.cause, Cause::creep);
+  EXPECT_THAT(text(comparison), HasSubstr("within a factor of 3: MPM papanastasiou (0.20 mm/s of 0.69 mm/s"));
   EXPECT_NEAR(*creep.volume_drift, -1e-5, 1e-9);
   EXPECT_EQ(creep.cpu, 12.0);
   EXPECT_NEAR(*creep.cpu_per_simulated_second, 0.2, 1e-12);

@@ -126,7 +126,8 @@ std::string cause_sentence(const Comparison& comparison) {
   const auto add = [&](const std::vector<std::string>& parts, const std::string& what) {
     if (!parts.empty()) text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", what, listed(parts));
   };
-  add(creep, "What still moves is no more than the creep of the regularisation");
+  add(creep, fmt::format("What still moves is the creep of the regularisation, within a factor of {:.3g}",
+                         comparison.options.creep_factor));
   add(either, "Creep of the regularisation or noise, which cannot be told apart here");
   add(noise, "Noise of the numerics, beyond what the regularisation explains");
   add(unexplained, "Faster than the regularisation explains, though no noise was reported");

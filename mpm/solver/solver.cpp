@@ -222,7 +222,7 @@ class SolverOf final : public Solver {
     const auto nodes_size = static_cast<std::size_t>(power(block_edge, settings_.dimension)) * values;
     const std::size_t slots = blocks_.slot_count();
     const std::size_t occupied = blocks_.occupied().size();
-    const auto with_spare = [](std::size_t count) { return count + count / 8; };
+    const auto with_spare = [](std::size_t count) { return count + count / 16; };
     if (arenas_.size() < occupied * arena_size) arenas_ = AlignedArray<T>(with_spare(occupied) * arena_size);
     if (nodes_.size() < slots * nodes_size) nodes_ = AlignedArray<T>(with_spare(slots) * nodes_size);
     if (smooth()) {

@@ -34,7 +34,7 @@ std::uint32_t whole_lines(std::uint32_t places) { return (places + line - 1) / l
 /// Places for a block with so many particles: a few of its neighbours' may come.
 std::uint32_t places_for(std::uint32_t count) {
   constexpr std::uint32_t least_spare = 8;
-  return whole_lines(count + count / 16 + least_spare);
+  return whole_lines(count + count / 32 + least_spare);
 }
 
 }  // namespace
@@ -130,10 +130,10 @@ std::vector<std::uint32_t> SparseBlocks::build(const std::vector<CellIndex>& cel
   return places;
 }
 
-std::uint32_t SparseBlocks::places_needed(std::uint32_t slot) const {
-  // Those that are there lie there until the block is put in order.
+/// Particles that lie in a block's places until it is put in order, and after that.
+std::uint32_t SparseBlocks::most_particles(std::uint32_t slot) const {
   const Slot& s = slots_[slot];
-  return s.to_come() > 0 ? whole_lines(std::max(s.count(), s.to_come())) : 0;
+  return s.to_come() > 0 ? std::max(s.count(), s.to_come()) : 0;
 }
 
 /// Where the places of the block that lies at `rank` in the arrays end: where the next one begins.
@@ -143,7 +143,7 @@ std::uint32_t SparseBlocks::places_end(std::size_t rank) const {
 
 std::uint32_t SparseBlocks::places_to_spare(std::size_t rank) const {
   const std::uint32_t has = places_end(rank) - slots_[in_memory_[rank]].first;
-  return has - std::min(has, places_needed(in_memory_[rank]));
+  return has - std::min(has, whole_lines(most_particles(in_memory_[rank])));
 }
 
 std::size_t SparseBlocks::rank_in_memory(std::uint32_t slot) const {
@@ -159,10 +159,10 @@ void SparseBlocks::lay_out() {
   in_memory_.clear();
   std::size_t wanted = 0;
   for (std::uint32_t s = 0; s < slots_.size(); ++s) {
-    const std::uint32_t needed = places_needed(s);
-    if (needed == 0) continue;
+    const std::uint32_t particles = most_particles(s);
+    if (particles == 0) continue;
     in_memory_.push_back(s);
-    wanted += places_for(needed);
+    wanted += places_for(particles);
   }
   std::sort(in_memory_.begin(), in_memory_.end(),
             [&](std::uint32_t a, std::uint32_t b) { return slots_[a].block < slots_[b].block; });
@@ -177,7 +177,7 @@ void SparseBlocks::lay_out() {
     const std::uint32_t s = in_memory_[rank];
     const auto to = used + static_cast<std::uint32_t>(spare * rank / in_memory_.size()) / line * line;
     if (slots_[s].count() > 0) relocation_.new_places.push_back({slots_[s].first, to, slots_[s].count()});
-    used += places_for(places_needed(s));
+    used += places_for(most_particles(s));
     slots_[s].first = to;
   }
 }
@@ -195,7 +195,8 @@ bool SparseBlocks::make_room(std::uint32_t slot) {
   if (slots_[slot].to_come() == 0) return true;
   if (slots_[slot].count() == 0) return find_places(slot);
   const std::size_t rank = rank_in_memory(slot);
-  const std::uint32_t has = places_end(rank) - slots_[slot].first, needed = places_needed(slot);
+  const std::uint32_t has = places_end(rank) - slots_[slot].first,
+                      needed = whole_lines(most_particles(slot));
   return needed <= has || push(rank, needed - has, Side::behind) || push(rank, needed - has, Side::before);
 }
 
@@ -208,7 +209,7 @@ bool SparseBlocks::find_places(std::uint32_t slot) {
       best = rank;
       most = spare;
     }
-  const std::uint32_t needed = places_needed(slot);
+  const std::uint32_t needed = whole_lines(most_particles(slot));
   if (most < needed) return false;
   // Either has half of what is left.
   slots_[slot].first = places_end(best) - needed - (most - needed) / 2 / line * line;
@@ -227,8 +228,8 @@ bool SparseBlocks::push(std::size_t rank, std::uint32_t missing, Side side) {
     if (side == Side::behind) return places_to_spare(pushed(i));
     return pushed(i) > 0 ? places_to_spare(pushed(i) - 1) : slots_[in_memory_.front()].first;
   };
-  const std::uint32_t needed = places_needed(in_memory_[rank]),
-                      wanted = missing + places_for(needed) - needed;
+  const std::uint32_t particles = most_particles(in_memory_[rank]),
+                      wanted = missing + places_for(particles) - whole_lines(particles);
   std::array<std::uint32_t, farthest_pushed> distance{};
   std::size_t count = 0;
   std::uint32_t left = wanted;
@@ -403,7 +404,10 @@ void SparseBlocks::plan_reordering(Slot& s) {
 
 BlockView SparseBlocks::view(std::uint32_t slot) {
   Slot& s = slots_[slot];
-  if (s.movers.size() < s.count()) s.movers.resize(places_for(s.count()));
+  if (s.movers.size() < s.count()) {
+    s.movers.reserve(places_for(s.count()));  // or else there would be room for twice as many
+    s.movers.resize(places_for(s.count()));
+  }
   BlockView v;
   for (int a = 0; a < axes(); ++a) v.origin[a] = s.block[static_cast<std::size_t>(a)] * block_edge;
   v.slot = slot;
