@@ -63,13 +63,21 @@ double mesh_cells(const Scene& scene) {
   return 0.0;
 }
 
-/// Steps of an OpenFOAM run, the few of the fall that the Courant number shortens aside.
-double foam_steps(const Scene& scene) {
+/// Steps of a slump's OpenFOAM run, the few of the fall that the Courant number shortens aside.
+double unhurried_foam_steps(const Scene& scene) {
   const double first = largest_foam_step(scene), most = grown_foam_step(scene), end = scene.time.end;
   const double grows = first / foam_step_of_time, grown = most / foam_step_of_time;
   if (most <= first || end <= grows) return end / first;
   return grows / first + std::log(std::min(end, grown) / grows) / foam_step_of_time +
          std::max(end - grown, 0.0) / most;
+}
+
+/// Steps of an OpenFOAM run. Out of a funnel concrete falls, and air behind it, for as long as the run lasts.
+double foam_steps(const Scene& scene) {
+  const double unhurried = unhurried_foam_steps(scene);
+  if (scene.kind != Kind::v_funnel) return unhurried;
+  const double speed = std::sqrt(2.0 * scene.forces.gravity * scene.body_height());
+  return std::max(unhurried, scene.time.end * speed / (scene.foam.max_courant * scene.foam.cell));
 }
 
 }  // namespace
