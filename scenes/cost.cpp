@@ -72,7 +72,8 @@ double unhurried_foam_steps(const Scene& scene) {
          std::max(end - grown, 0.0) / most;
 }
 
-/// Steps of an OpenFOAM run. Out of a funnel concrete falls, and air behind it, for as long as the run lasts.
+/// Steps of an OpenFOAM run. Out of a funnel concrete falls, and air behind it, for as long as the run lasts,
+/// and leaves the mesh shortly below the outlet.
 double foam_steps(const Scene& scene) {
   const double unhurried = unhurried_foam_steps(scene);
   if (scene.kind != Kind::v_funnel) return unhurried;

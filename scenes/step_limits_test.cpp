@@ -113,9 +113,8 @@ TEST(Cost, GrowsWithWhatIsComputed) {
   // Of funnels 3,900 to 4,140 steps were measured on 12.5 mm cells and 2,800 to 2,930 on 16.7 mm, of their
   // fluids three quarters of that.
   EXPECT_NEAR(estimate_foam(load_scene("mix-a-vfunnel-sf0", {})).steps, 4000.0, 800.0);
-  Overrides coarse;
-  coarse.set = {"foam.cell=0.016667"};
-  EXPECT_NEAR(estimate_foam(load_scene("mix-a-vfunnel-sf0", coarse)).steps, 2900.0, 600.0);
+  EXPECT_NEAR(estimate_foam(load_scene("mix-a-vfunnel-sf0", {{"foam.cell=0.016667"}, {}})).steps, 2900.0,
+              600.0);
 }
 
 TEST(FreeFallSpeed, IsThatOfTheBodysHeight) {

@@ -180,7 +180,8 @@ struct FourRecords<T, true> {
     all = __builtin_shufflevector(ab, cd, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
   }
   FLOWREST_INLINE FourRecords times(const T* factors) const {
-    // Read as a whole register, of which the first four count: the compiler widens a narrow one in memory.
+    // Read as a whole register, of which the first four count (the workspace has room behind): the compiler
+    // widens a narrow one in memory.
     const Record<T, 16>& f = record_at<16>(factors);
     FourRecords out = *this;
     out.all *= __builtin_shufflevector(f, f, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);

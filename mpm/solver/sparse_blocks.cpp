@@ -136,6 +136,10 @@ std::uint32_t SparseBlocks::most_particles(std::uint32_t slot) const {
   return s.to_come() > 0 ? std::max(s.count(), s.to_come()) : 0;
 }
 
+std::uint32_t SparseBlocks::places_needed(std::uint32_t slot) const {
+  return whole_lines(most_particles(slot));
+}
+
 /// Where the places of the block that lies at `rank` in the arrays end: where the next one begins.
 std::uint32_t SparseBlocks::places_end(std::size_t rank) const {
   return rank + 1 < in_memory_.size() ? slots_[in_memory_[rank + 1]].first : room_;
@@ -143,7 +147,7 @@ std::uint32_t SparseBlocks::places_end(std::size_t rank) const {
 
 std::uint32_t SparseBlocks::places_to_spare(std::size_t rank) const {
   const std::uint32_t has = places_end(rank) - slots_[in_memory_[rank]].first;
-  return has - std::min(has, whole_lines(most_particles(in_memory_[rank])));
+  return has - std::min(has, places_needed(in_memory_[rank]));
 }
 
 std::size_t SparseBlocks::rank_in_memory(std::uint32_t slot) const {
@@ -195,8 +199,7 @@ bool SparseBlocks::make_room(std::uint32_t slot) {
   if (slots_[slot].to_come() == 0) return true;
   if (slots_[slot].count() == 0) return find_places(slot);
   const std::size_t rank = rank_in_memory(slot);
-  const std::uint32_t has = places_end(rank) - slots_[slot].first,
-                      needed = whole_lines(most_particles(slot));
+  const std::uint32_t has = places_end(rank) - slots_[slot].first, needed = places_needed(slot);
   return needed <= has || push(rank, needed - has, Side::behind) || push(rank, needed - has, Side::before);
 }
 
@@ -209,7 +212,7 @@ bool SparseBlocks::find_places(std::uint32_t slot) {
       best = rank;
       most = spare;
     }
-  const std::uint32_t needed = whole_lines(most_particles(slot));
+  const std::uint32_t needed = places_needed(slot);
   if (most < needed) return false;
   // Either has half of what is left.
   slots_[slot].first = places_end(best) - needed - (most - needed) / 2 / line * line;
@@ -228,8 +231,8 @@ bool SparseBlocks::push(std::size_t rank, std::uint32_t missing, Side side) {
     if (side == Side::behind) return places_to_spare(pushed(i));
     return pushed(i) > 0 ? places_to_spare(pushed(i) - 1) : slots_[in_memory_.front()].first;
   };
-  const std::uint32_t particles = most_particles(in_memory_[rank]),
-                      wanted = missing + places_for(particles) - whole_lines(particles);
+  const std::uint32_t slot = in_memory_[rank],
+                      wanted = missing + places_for(most_particles(slot)) - places_needed(slot);
   std::array<std::uint32_t, farthest_pushed> distance{};
   std::size_t count = 0;
   std::uint32_t left = wanted;

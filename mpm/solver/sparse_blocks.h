@@ -124,6 +124,7 @@ class SparseBlocks {
   static void add_piece(Reordering&, std::uint32_t from, std::uint32_t to, std::uint32_t count);
   void lay_out();
   std::uint32_t most_particles(std::uint32_t slot) const;
+  std::uint32_t places_needed(std::uint32_t slot) const;
   std::uint32_t places_end(std::size_t rank) const;
   std::uint32_t places_to_spare(std::size_t rank) const;
   std::size_t rank_in_memory(std::uint32_t slot) const;

@@ -133,8 +133,9 @@ FLOWREST_INLINE void sum_slab(const Sources<T, Dim, Sides, Values>& source, cons
     for (int k = 0; k < nodes; ++k) slab.sum[j][k] = sum[j][k];
 }
 
-/// The same for all three slabs of quadratic functions at once, where a register holds two records, those of
-/// the last axis' first and last node: every source is read once, and all sums stay in registers.
+/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes: all three
+/// slabs of quadratic functions at once, where a register holds two records, those of the last axis' first
+/// and last node: every source is read once, and all sums stay in registers.
 template <class T, int Dim, int Values>
 void scatter_in_pairs(T* arena_cell, const Sources<T, Dim, 2, Values>& source,
                       const Weights<T, Dim, Quadratic>& w, int first, int count) {
@@ -149,7 +150,7 @@ void scatter_in_pairs(T* arena_cell, const Sources<T, Dim, 2, Values>& source,
     const Pair ends = pair_of<T>(w.weight[last][0][q], w.weight[last][1][q]);
     const Pair value = twice<T>(record_at<Values>(source.value(q)));
     const Pair along = record_at<2 * Values>(source.term(last, 0, q));
-    Pair row[2];
+    Pair row[2] = {};
     if constexpr (Dim == 3)
       for (int side = 0; side < 2; ++side) row[side] = twice<T>(record_at<Values>(source.term(1, side, q)));
 #pragma GCC unroll 3
@@ -203,15 +204,11 @@ void scatter_in_pairs(T* arena_cell, const Sources<T, Dim, 2, Values>& source,
     }
 }
 
-/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
+/// The same slab by slab.
 template <class T, int Dim, class Shape, int Sides, int Values>
-void scatter(T* arena_cell, const Sources<T, Dim, Sides, Values>& source, const Weights<T, Dim, Shape>& w,
-             int first, int count) {
+void scatter_in_slabs(T* arena_cell, const Sources<T, Dim, Sides, Values>& source,
+                      const Weights<T, Dim, Shape>& w, int first, int count) {
   constexpr int nodes = Shape::nodes;
-  if constexpr (Sides == 2 && fits_register<T, 2 * Values>) {
-    scatter_in_pairs<T, Dim, Values>(arena_cell, source, w, first, count);
-    return;
-  }
   Slab<T, Dim, Shape, Values> slabs[nodes];
   sum_slab<T, Dim, Shape, Sides, Values, 0>(source, w, first, count, slabs[0]);
   sum_slab<T, Dim, Shape, Sides, Values, 1>(source, w, first, count, slabs[1]);
@@ -225,6 +222,17 @@ void scatter(T* arena_cell, const Sources<T, Dim, Sides, Values>& source, const 
       for (int i = 0; i < nodes; ++i)
         record_at<Values>(arena_cell + arena_index<Dim>(i, j, k) * node_values) += slabs[i].sum[j][k];
     }
+}
+
+/// Adds the particles [first, first + count) of a tile, all of one cell, to that cell's nodes.
+template <class T, int Dim, class Shape, int Sides, int Values>
+void scatter(T* arena_cell, const Sources<T, Dim, Sides, Values>& source, const Weights<T, Dim, Shape>& w,
+             int first, int count) {
+  if constexpr (Sides == 2 && fits_register<T, 2 * Values>) {
+    scatter_in_pairs<T, Dim, Values>(arena_cell, source, w, first, count);
+  } else {
+    scatter_in_slabs<T, Dim, Shape, Sides, Values>(arena_cell, source, w, first, count);
+  }
 }
 
 /// Mass, momentum, volume and the impulse of the step's forces of one block's particles, into that block's
@@ -336,13 +344,14 @@ void particles_to_grid(const StepParameters<T>& step, const ParticleView<T>& par
       }
 #pragma GCC unroll 3
       for (int a = 0; a < Dim; ++a) {
-        const Four pull(none, stress[a][0], stress[a][1], Dim == 3 ? stress[a][Dim - 1] : none);
+        const Four stresses(none, stress[a][0], stress[a][1], Dim == 3 ? stress[a][Dim - 1] : none);
         const auto own_of = [&](int c) { return affine ? record_at(own[c][a] + q) : none; };
-        const Four slope(none, own_of(0), own_of(1), Dim == 3 ? own_of(Dim - 1) : none);
+        const Four slants(none, own_of(0), own_of(1), Dim == 3 ? own_of(Dim - 1) : none);
 #pragma GCC unroll 2
         for (int side = 0; side < sides; ++side)
           Four::write_pairs(sources.term(a, side, q), sides * node_values,
-                            affine ? slope.times(slant[a][side] + q) : slope, pull.times(push[a][side] + q));
+                            affine ? slants.times(slant[a][side] + q) : slants,
+                            stresses.times(push[a][side] + q));
       }
     }
 
