@@ -1,7 +1,6 @@
 #include "mpm/benchmark/feature_costs.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -26,21 +25,17 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double time_of(FlowingSlump& slump, double (*clock)()) {
-  const double begin = clock();
+double time_of(FlowingSlump& slump) {
+  const double begin = cpu_seconds();
   for (int i = 0; i < steps_per_turn; ++i) slump.advance();
-  return (clock() - begin) / (steps_per_turn * slump.particles()) * 1e9;
+  return (cpu_seconds() - begin) / (steps_per_turn * slump.particles()) * 1e9;
 }
 
-Paired compare(FlowingSlump without, FlowingSlump with_it, double (*clock)() = cpu_seconds) {
+Paired compare(FlowingSlump without, FlowingSlump with_it) {
   std::vector<double> first, ratio;
   for (int turn = 0; turn < turns; ++turn) {
-    first.push_back(time_of(without, clock));
-    ratio.push_back(time_of(with_it, clock) / first.back());
+    first.push_back(time_of(without));
+    ratio.push_back(time_of(with_it) / first.back());
   }
   return {median(first), median(ratio)};
 }
@@ -55,7 +50,7 @@ Paired gauge_cost(FlowingSlump slump) {
   const Gauges gauges(slump.scene());
   std::vector<double> step, ratio;
   for (int turn = 0; turn < turns; ++turn) {
-    step.push_back(time_of(slump, cpu_seconds));
+    step.push_back(time_of(slump));
     const double begin = cpu_seconds();
     gauges.measure(slump.solver());
     const double once = (cpu_seconds() - begin) / slump.particles() * 1e9;
@@ -133,11 +128,6 @@ void print_feature_costs() {
                 FlowingSlump(linear)));
   print("the third dimension (per particle-step, for axisymmetric)",
         compare(FlowingSlump({"mpm.threads=1", "mpm.cell=0.0025"}), FlowingSlump(base)));
-  print("a second thread (wall time)",
-        compare(FlowingSlump(base), FlowingSlump(with(base, {"mpm.threads=2"})), wall_seconds));
-  print(
-      "a second thread, a million particles (wall time)",
-      compare(FlowingSlump(quarter_1m()), FlowingSlump(with(quarter_1m(), {"mpm.threads=2"})), wall_seconds));
   print_output_costs();
 }
 

@@ -3,6 +3,7 @@
 //   scripts/bench                                   everything
 //   scripts/bench --benchmark_filter=quarter/44k    one of them
 //   scripts/bench --features                        what each feature of a scene costs
+//   scripts/bench --threads                         what all cores give over one
 //
 // `particle_steps` is per CPU second; `of_fma` and `of_bandwidth` are its arithmetic (one fused multiply-add
 // a particle-step) and its memory traffic (every byte stored, once) over the machine's limits, measured in
@@ -18,6 +19,7 @@
 #include "mpm/benchmark/feature_costs.h"
 #include "mpm/benchmark/flowing_slump.h"
 #include "mpm/benchmark/machine_limits.h"
+#include "mpm/benchmark/thread_gain.h"
 #include "mpm/material/flow_law.h"
 
 namespace {
@@ -98,6 +100,10 @@ std::vector<Case> cases() {
 int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "--features") == 0) {
     print_feature_costs();
+    return 0;
+  }
+  if (argc == 2 && std::strcmp(argv[1], "--threads") == 0) {
+    print_thread_gain();
     return 0;
   }
   const Limits limits;

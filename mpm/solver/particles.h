@@ -1,5 +1,7 @@
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -91,14 +93,27 @@ class Particles {
   }
 
   /// Sets aside what is between two blocks, and moves whole blocks to new places. Call `settle` next.
-  void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan, int threads) {
-    set_aside(plan.departing, threads);
+  void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan) {
+    const int threads = static_cast<int>(plan.departing_end.size());
+    departed_.resize(plan.departing.size() * arrays_.size());
+#pragma omp parallel num_threads(threads)
+    {
+      const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+      const std::size_t end = plan.departing_end[thread];
+      for (std::size_t i = thread == 0 ? 0 : plan.departing_end[thread - 1]; i < end; ++i)
+        for (std::size_t k = 0; k < arrays_.size(); ++k)
+          departed_[i * arrays_.size() + k] = arrays_[k][plan.departing[i]];
+    }
     if (plan.laid_out_anew) {
       lay_out_anew(plan.new_places, blocks.room(), threads);
-    } else {
-      for (auto& array : arrays_)
-        for (const auto& move : plan.new_places)
-          std::memmove(array.data() + move.to, array.data() + move.from, move.count * sizeof(T));
+      return;
+    }
+    const auto arrays = static_cast<std::int64_t>(arrays_.size());
+#pragma omp parallel for schedule(static) num_threads(threads) if (!plan.new_places.empty())
+    for (std::int64_t k = 0; k < arrays; ++k) {
+      T* const array = arrays_[static_cast<std::size_t>(k)].data();
+      for (const auto& move : plan.new_places)
+        std::memmove(array + move.to, array + move.from, move.count * sizeof(T));
     }
   }
 
@@ -136,16 +151,6 @@ class Particles {
   }
 
  private:
-  void set_aside(const std::vector<std::uint32_t>& places, int threads) {
-    departed_.resize(places.size() * arrays_.size());
-    const auto n = static_cast<std::int64_t>(places.size());
-#pragma omp parallel for schedule(static) num_threads(threads) if (n > 1000)
-    for (std::int64_t i = 0; i < n; ++i)
-      for (std::size_t k = 0; k < arrays_.size(); ++k)
-        departed_[static_cast<std::size_t>(i) * arrays_.size() + k] =
-            arrays_[k][places[static_cast<std::size_t>(i)]];
-  }
-
   void lay_out_anew(const std::vector<SparseBlocks::NewPlace>& moves, std::size_t room, int threads) {
     const auto n = static_cast<std::int64_t>(moves.size());
     for (std::size_t k = 0; k < arrays_.size(); ++k) {

@@ -9,6 +9,7 @@
 #include "mpm/boundary/nearby_walls.h"
 #include "mpm/boundary/wall_contact.h"
 #include "mpm/material/deviator.h"
+#include "mpm/solver/block_shares.h"
 #include "mpm/solver/particles.h"
 #include "mpm/transfer/shape.h"
 #include "runs/run_directory.h"
@@ -20,6 +21,8 @@ namespace {
 /// A thread is worth its barriers from about this many particles each.
 constexpr std::size_t particles_per_thread = 1500;
 constexpr int usual_tile_capacity = 96;
+/// Over blocks, and over blocks of nodes, at most.
+constexpr int loops_of_a_step = 3;
 
 template <class T>
 class SolverOf final : public Solver {
@@ -44,6 +47,7 @@ class SolverOf final : public Solver {
       if (v.lambda) v.lambda[at] = static_cast<T>(seeds[p].flocculation);
     }
     prepare();
+    fit_workspaces();
     update_volumes();
   }
 
@@ -58,6 +62,7 @@ class SolverOf final : public Solver {
     tile_capacity_ = state.tile_capacity;
     if (contact_) contact_->set_forces(state.wall_forces);
     prepare();
+    fit_workspaces();
     update_volumes();
   }
 
@@ -144,6 +149,8 @@ class SolverOf final : public Solver {
     threads_ = settings.threads > 0
                    ? settings.threads
                    : std::clamp(static_cast<int>(count / particles_per_thread), 1, omp_get_num_procs());
+    shares_ = BlockShares(threads_, loops_of_a_step);
+    node_shares_ = BlockShares(threads_, loops_of_a_step);
     auto& p = parameters_;
     p.cell = static_cast<T>(settings.cell);
     p.density = static_cast<T>(settings.density);
@@ -235,6 +242,14 @@ class SolverOf final : public Solver {
         averages_ = std::move(more);
       }
     }
+    views_.clear();
+    for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
+    share_out();
+    if (contact_) mark_walls_nearby();
+  }
+
+  /// Room for the fullest cell.
+  void fit_workspaces() {
     while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell())
       tile_capacity_ += 32;
     if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {
@@ -246,37 +261,59 @@ class SolverOf final : public Solver {
         workspaces_.push_back({workspace_memory_.back().data(), tile_capacity_});
       }
     }
-    views_.clear();
-    for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
+  }
+
+  /// Every thread gets as many particles, in blocks that lie side by side, and the nodes among them.
+  void share_out() {
+    const auto cells = static_cast<std::size_t>(power(block_edge, settings_.dimension));
+    const auto threads = static_cast<std::size_t>(threads_);
+    std::vector<std::uint32_t> ends;
+    std::size_t before = 0;
+    for (std::uint32_t b = 0; b < views_.size(); ++b) {
+      while (before * threads > count_ * (ends.size() + 1)) ends.push_back(b);
+      before += views_[b].start[cells];
+    }
+    ends.resize(threads, static_cast<std::uint32_t>(views_.size()));
+    shares_.share_out(std::move(ends));
+
+    std::vector<std::vector<NodeView>> of_thread(threads);
+    for (std::uint32_t slot = 0; slot < blocks_.slot_count(); ++slot) {
+      const NodeView nodes = blocks_.node_view(slot);
+      // Nodes of no block are in one whose material has left; they are nobody's.
+      const auto* const end = nodes.minus + (1 << settings_.dimension);
+      const auto* const arena = std::find_if(nodes.minus, end, [](std::uint32_t a) { return a != no_slot; });
+      of_thread[arena == end ? 0 : static_cast<std::size_t>(shares_.owner(*arena))].push_back(nodes);
+    }
     node_views_.clear();
-    for (std::uint32_t slot = 0; slot < slots; ++slot) node_views_.push_back(blocks_.node_view(slot));
-    if (contact_) mark_walls_nearby();
-    stale_ = false;
+    std::vector<std::uint32_t> node_ends;
+    for (const auto& own : of_thread) {
+      node_views_.insert(node_views_.end(), own.begin(), own.end());
+      node_ends.push_back(static_cast<std::uint32_t>(node_views_.size()));
+    }
+    node_shares_.share_out(std::move(node_ends));
   }
 
   void run_stages() {
-    if (stale_) prepare();
     if (contact_) {
       if (nearby_walls_->follow(time_ + static_cast<double>(parameters_.step))) mark_walls_nearby();
       contact_->place(blocks_, time_);
     }
-    const auto blocks = static_cast<std::int64_t>(views_.size());
-    const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
     const ParticleView<T>& view = particles_.view();
     const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
     double marks[6] = {};
+    shares_.begin();
+    node_shares_.begin();
 #pragma omp parallel num_threads(threads_)
     {
-      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
-      const auto over_blocks = [&](BlockStage<T> stage) {
-#pragma omp for schedule(dynamic, 1)
-        for (std::int64_t b = 0; b < blocks; ++b)
-          stage(parameters_, view, views_[static_cast<std::size_t>(b)], grid, workspace);
+      const int thread = omp_get_thread_num();
+      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(thread)];
+      const auto over_blocks = [&](int loop, const auto& stage) {
+        shares_.run(loop, thread, [&](std::uint32_t b) { stage(views_[b]); });
+#pragma omp barrier
       };
-      const auto over_nodes = [&](NodeStage<T> stage) {
-#pragma omp for schedule(static)
-        for (std::int64_t b = 0; b < node_blocks; ++b)
-          stage(parameters_, node_views_[static_cast<std::size_t>(b)], grid);
+      const auto over_nodes = [&](int loop, NodeStage<T> stage) {
+        node_shares_.run(loop, thread, [&](std::uint32_t b) { stage(parameters_, node_views_[b], grid); });
+#pragma omp barrier
       };
       const auto mark = [&](int i) {
 #pragma omp master
@@ -285,33 +322,36 @@ class SolverOf final : public Solver {
       mark(0);
       // A block's particles are put in order when they are needed next, for then they are in the cache
       // anyway.
-      std::vector<T> taken;
-#pragma omp for schedule(dynamic, 1)
-      for (std::int64_t b = 0; b < blocks; ++b) {
-        const BlockView& block = views_[static_cast<std::size_t>(b)];
-        particles_.settle(blocks_.reordering(block.slot), taken);
+      std::vector<T> table;
+      over_blocks(0, [&](BlockView& block) {
+        settle(block, table);
         kernels_.particles_to_grid(parameters_, view, block, grid, workspace);
-      }
+      });
       mark(1);
-      over_nodes(kernels_.update_nodes);
+      over_nodes(0, kernels_.update_nodes);
       if (contact_) {
 #pragma omp single
         wall_work_ = contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
       }
       mark(2);
-#pragma omp for schedule(static)
-      for (std::int64_t b = 0; b < blocks; ++b) *views_[static_cast<std::size_t>(b)].sums = {};
-      over_blocks(kernels_.grid_to_particles);
+      over_blocks(1, [&](const BlockView& block) {
+        *block.sums = {};
+        kernels_.grid_to_particles(parameters_, view, block, grid, workspace);
+        if (!kernels_.remapped_to_particles) blocks_.plan_movers(block.slot);
+      });
       mark(3);
-      if (smooth()) over_nodes(kernels_.average_dilatation);
+      if (smooth()) over_nodes(1, kernels_.average_dilatation);
       if (kernels_.remapped_to_particles) {
-        over_nodes(kernels_.remap_nodes);
+        over_nodes(2, kernels_.remap_nodes);
         if (contact_) {
 #pragma omp single
           contact_->apply_to_remapped(grid.nodes, drive_);
         }
         mark(4);
-        over_blocks(kernels_.remapped_to_particles);
+        over_blocks(2, [&](const BlockView& block) {
+          kernels_.remapped_to_particles(parameters_, view, block, grid, workspace);
+          blocks_.plan_movers(block.slot);
+        });
       } else {
         mark(4);
       }
@@ -330,23 +370,21 @@ class SolverOf final : public Solver {
   void update_volumes() {
     if (!smooth()) return;
     const double begin = omp_get_wtime();
-    if (stale_) prepare();
-    const auto blocks = static_cast<std::int64_t>(views_.size());
-    const auto node_blocks = static_cast<std::int64_t>(node_views_.size());
     const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
+    shares_.begin();
+    node_shares_.begin();
 #pragma omp parallel num_threads(threads_)
     {
-      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
-      std::vector<T> taken;
-#pragma omp for schedule(dynamic, 1)
-      for (std::int64_t b = 0; b < blocks; ++b) {
-        const BlockView& block = views_[static_cast<std::size_t>(b)];
-        particles_.settle(blocks_.reordering(block.slot), taken);
-        kernels_.update_volumes(parameters_, particles_.view(), block, grid, workspace);
-      }
-#pragma omp for schedule(static)
-      for (std::int64_t b = 0; b < node_blocks; ++b)
-        kernels_.average_pressure(parameters_, node_views_[static_cast<std::size_t>(b)], grid);
+      const int thread = omp_get_thread_num();
+      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(thread)];
+      std::vector<T> table;
+      shares_.run(0, thread, [&](std::uint32_t b) {
+        settle(views_[b], table);
+        kernels_.update_volumes(parameters_, particles_.view(), views_[b], grid, workspace);
+      });
+#pragma omp barrier
+      node_shares_.run(
+          0, thread, [&](std::uint32_t b) { kernels_.average_pressure(parameters_, node_views_[b], grid); });
     }
     times_.volumes += omp_get_wtime() - begin;
   }
@@ -377,18 +415,25 @@ class SolverOf final : public Solver {
   void relocate() {
     const double begin = omp_get_wtime();
     if (moved_) {
-      const auto& plan = blocks_.relocate();
+      const auto& plan = blocks_.relocate(shares_);
       for (const auto& h : plan.held)
         particles_.view().position[h.axis][h.place] = h.upper ? highest_in_cell() : lowest_in_cell();
-      particles_.make_way(blocks_, plan, threads_);
-      stale_ = true;
+      particles_.make_way(blocks_, plan);
+      if (plan.other_blocks) prepare();
+      fit_workspaces();
     }
     times_.sorting += omp_get_wtime() - begin;
   }
 
+  /// One block's particles, where the last relocation has them, for a thread with a `table` of its own.
+  void settle(BlockView& block, std::vector<T>& table) {
+    blocks_.follow(block);
+    particles_.settle(blocks_.reordering(block.slot), table);
+  }
+
   /// Everything in its place, for those who look at particles between steps.
   void settle() {
-    for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), taken_);
+    for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), table_);
   }
 
   void fill_motion(ParticleBatch& batch, const BlockView& block) {
@@ -469,8 +514,8 @@ class SolverOf final : public Solver {
   std::vector<Workspace<T>> workspaces_;
   std::vector<BlockView> views_;
   std::vector<NodeView> node_views_;
-  std::vector<T> taken_;
-  bool stale_ = true;
+  BlockShares shares_, node_shares_;  ///< of views_, and of node_views_
+  std::vector<T> table_;
   bool moved_ = false;
   StageTimes times_;
 };

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "mpm/solver/block_shares.h"
 #include "mpm/solver/layout.h"
 
 namespace flowrest::mpm {
@@ -34,9 +35,13 @@ class SparseBlocks {
   /// Their cells, in the same order.
   std::vector<CellIndex> sorted_cells() const;
 
-  /// Relocation of the particles that the last step's kernels reported in the blocks' mover lists. All that
-  /// is asked of the blocks afterwards is as if everything had moved already; the arrays follow
-  /// (Particles::make_way, then Particles::settle for every block before its particles are looked at).
+  /// Where the particles of a block go that the last step's kernels reported in its mover list. Blocks may
+  /// be asked side by side, each once before relocate().
+  void plan_movers(std::uint32_t slot);
+
+  /// Relocation of all of them. What is asked of the blocks afterwards is as if everything had moved already;
+  /// the arrays follow (Particles::make_way, then Particles::settle for every block before its particles are
+  /// looked at). Threads plan for the blocks that are theirs: a share is a range of occupied().
   ///
   /// A particle that would pass a plane wall stays in its cell: it is in `held`, at the place where it is
   /// before anything moves. `departing` particles are to be set aside, in this order; blocks that make room
@@ -52,11 +57,13 @@ class SparseBlocks {
   };
   struct Relocation {
     std::vector<Held> held;
-    std::vector<std::uint32_t> departing;  ///< places
+    std::vector<std::uint32_t> departing;    ///< places
+    std::vector<std::size_t> departing_end;  ///< of those that every thread's blocks set aside
     std::vector<NewPlace> new_places;
     bool laid_out_anew = false;
+    bool other_blocks = false;  ///< are occupied now
   };
-  const Relocation& relocate();
+  const Relocation& relocate(const BlockShares&);
 
   /// What the arrays still owe to a block, by index in it: `pieces` that change their place, in the order of
   /// where they go, with a hole for each of the `arrivals`, which are among those set aside.
@@ -75,7 +82,9 @@ class SparseBlocks {
 
   std::size_t slot_count() const { return slots_.size(); }
   const std::vector<std::uint32_t>& occupied() const { return occupied_; }
+  /// A view holds until other blocks are occupied, if it follows every relocation.
   BlockView view(std::uint32_t slot);
+  void follow(BlockView&);
   NodeView node_view(std::uint32_t slot) const;
   const BlockSums& sums(std::uint32_t slot) const { return slots_[slot].sums; }
   void clear_sums(std::uint32_t slot) { slots_[slot].sums = {}; }
@@ -98,6 +107,13 @@ class SparseBlocks {
     std::uint8_t old_cell, cell;
   };
   static constexpr std::uint8_t no_cell = 0xff;
+  /// A particle on its way to a cell of another block, which may not have a slot yet.
+  struct Departure {
+    std::uint32_t index;
+    std::uint8_t cell;
+    std::array<std::int32_t, 3> block;
+    std::uint32_t to;
+  };
   struct Slot {
     std::array<std::int32_t, 3> block{};  ///< block coordinates
     std::uint32_t first = 0;              ///< of its places
@@ -107,6 +123,8 @@ class SparseBlocks {
     std::uint32_t count_to_come = 0;  ///< particles after the relocation that is planned
     std::vector<Mover> movers;
     std::vector<Change> changes, arrivals;
+    std::vector<Departure> departures;
+    std::vector<Held> held;
     Reordering reordering;
     BlockSums sums;
     std::array<std::uint32_t, 8> plus{}, minus{};
@@ -119,10 +137,13 @@ class SparseBlocks {
   std::array<std::int32_t, 3> shifted(const std::array<std::int32_t, 3>& block, int delta, int sign) const;
   void wrap(std::array<std::int32_t, 3>& block) const;
   void touch(std::uint32_t slot);
-  void plan_mover(std::uint32_t slot, const Mover&);
-  void plan_reordering(Slot&);
+  void plan_mover(Slot&, const Mover&) const;
+  void depart(std::uint32_t from);
+  static void plan_reordering(Slot&, std::vector<std::uint32_t>& links);
   static void add_piece(Reordering&, std::uint32_t from, std::uint32_t to, std::uint32_t count);
+  // block_places.cpp
   void lay_out();
+  static std::uint32_t places_for(std::uint32_t count);
   std::uint32_t most_particles(std::uint32_t slot) const;
   std::uint32_t places_needed(std::uint32_t slot) const;
   std::uint32_t places_end(std::size_t rank) const;
@@ -133,6 +154,7 @@ class SparseBlocks {
   bool find_places(std::uint32_t slot);
   enum class Side { before, behind };
   bool push(std::size_t rank, std::uint32_t missing, Side);
+
   void refresh_neighbours();
   int axes() const { return dimension_; }
 
@@ -143,8 +165,6 @@ class SparseBlocks {
   std::vector<std::uint32_t> occupied_;  ///< ascending in block coordinates
   std::vector<std::uint32_t> touched_;
   Relocation relocation_;
-  std::vector<std::uint32_t> links_;  ///< from one change of a block to the next that goes to the same cell
-  bool occupancy_changed_ = false;
   std::uint32_t room_ = 0;                ///< places of the arrays
   std::vector<std::uint32_t> in_memory_;  ///< blocks with places, which reach to the next one's
   struct Moved {

@@ -154,6 +154,16 @@ void expect_agreement(SparseBlocks& blocks, const Numbered& numbers, const Brute
     }
 }
 
+BlockShares shared_out(int threads, std::size_t blocks) {
+  BlockShares shares(threads, 1);
+  std::vector<std::uint32_t> ends;
+  for (int t = 1; t <= threads; ++t)
+    ends.push_back(static_cast<std::uint32_t>(blocks * static_cast<std::size_t>(t * t) /
+                                              static_cast<std::size_t>(threads * threads)));
+  shares.share_out(std::move(ends));
+  return shares;
+}
+
 /// How often blocks outgrew their places, each way that they can.
 struct Outgrown {
   int laid_out_anew = 0, made_way = 0;
@@ -190,7 +200,8 @@ Outgrown wander(int dimension, const std::array<AxisBounds, 3>& bounds, const st
         v.movers[v.sums->movers++] = mover;
       }
     }
-    const auto& plan = blocks.relocate();
+    for (const auto slot : blocks.occupied()) blocks.plan_movers(slot);
+    const auto& plan = blocks.relocate(shared_out(1 + round % 3, blocks.occupied().size()));
     std::set<std::pair<std::uint32_t, int>> reported;
     for (const auto& h : plan.held) {
       const std::uint32_t p = numbers.at(h.place);
@@ -199,7 +210,7 @@ Outgrown wander(int dimension, const std::array<AxisBounds, 3>& bounds, const st
     }
     outgrown.laid_out_anew += plan.laid_out_anew;
     outgrown.made_way += !plan.laid_out_anew && !plan.new_places.empty();
-    numbers.particles.make_way(blocks, plan, 1 + round % 3);
+    numbers.particles.make_way(blocks, plan);
     std::vector<double> taken;
     for (const auto slot : blocks.occupied()) numbers.particles.settle(blocks.reordering(slot), taken);
     EXPECT_EQ(reported, truth.move(shifts)) << "round " << round;

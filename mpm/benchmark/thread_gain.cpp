@@ -1,0 +1,115 @@
+#include "mpm/benchmark/thread_gain.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "mpm/benchmark/flowing_slump.h"
+
+namespace flowrest::mpm::bench {
+
+namespace {
+
+constexpr int turns = 15;
+constexpr double particle_steps_per_turn = 1e6;
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Cores that this process may use.
+std::vector<int> cores() {
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  std::vector<int> found;
+  if (sched_getaffinity(0, sizeof all, &all) != 0) return found;
+  for (int c = 0; c < CPU_SETSIZE; ++c)
+    if (CPU_ISSET(c, &all)) found.push_back(c);
+  return found;
+}
+
+/// Keeps the calling thread, and those it starts from then on, on some cores.
+void stay_on(const std::vector<int>& some) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int c : some) CPU_SET(c, &set);
+  sched_setaffinity(0, sizeof set, &set);
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// Wall time of a particle-step, ns.
+double time_of(FlowingSlump& slump) {
+  const int steps = std::max(1, static_cast<int>(particle_steps_per_turn / slump.particles()));
+  const double begin = wall_seconds();
+  for (int i = 0; i < steps; ++i) slump.advance();
+  return (wall_seconds() - begin) / (steps * slump.particles()) * 1e9;
+}
+
+/// A core's speed is its own, above all in a virtual machine: one thread is measured on each of them in turn.
+void print_gain(const char* name, const std::vector<std::string>& set, const std::vector<int>& all) {
+  const auto threads = static_cast<double>(all.size());
+  FlowingSlump one(set), together(with(set, {"mpm.threads=" + std::to_string(all.size())}));
+  for (const int core : all) {  // until everything is in its place
+    stay_on({core});
+    time_of(one);
+  }
+  stay_on(all);
+  time_of(together);
+  const StageTimes one_before = one.solver().stage_times(), before = together.solver().stage_times();
+  std::vector<double> alone, both, gain;
+  for (int turn = 0; turn < turns; ++turn) {
+    double speed = 0.0;
+    for (const int core : all) {
+      stay_on({core});
+      speed += 1.0 / time_of(one);
+    }
+    alone.push_back(threads / speed);
+    stay_on(all);
+    both.push_back(time_of(together));
+    gain.push_back(alone.back() / both.back());
+  }
+  std::printf("  %-32s %6.1f ns %6.1f ns  x %.2f (%.2f to %.2f)", name, quantile(alone, 0.5),
+              quantile(both, 0.5), quantile(gain, 0.5), quantile(gain, 0.25), quantile(gain, 0.75));
+  const auto stage = [&](const char* what, double StageTimes::*s) {
+    const double of_one = (one.solver().stage_times().*s - one_before.*s) / threads,
+                 of_all = together.solver().stage_times().*s - before.*s;
+    if (of_one > 0.0) std::printf("  %s %.2f", what, of_one / of_all);
+  };
+  stage("to grid", &StageTimes::particles_to_grid);
+  stage("nodes", &StageTimes::nodes);
+  stage("back", &StageTimes::grid_to_particles);
+  stage("sorting", &StageTimes::sorting);
+  stage("volumes", &StageTimes::volumes);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void print_thread_gain() {
+  const std::vector<int> all = cores();
+  if (all.size() < 2) {
+    std::printf("There is one core here: nothing to gain\n");
+    return;
+  }
+  std::printf(
+      "what %zu threads gain: wall time of a particle-step on one core (the mean of all) and on all of them\n"
+      "(medians of %d turns; quartiles of the gain), and the gain of every stage\n",
+      all.size(), turns);
+  for (const auto& [size, base] : {std::pair{"44k", quarter_44k()}, std::pair{"1M", quarter_1m()}})
+    for (const char* scheme : {"quadratic-apic", "linear-flip"})
+      for (const char* precision : {"float", "double"})
+        print_gain(
+            (std::string(size) + "/" + scheme + "/" + precision).c_str(),
+            with(base, {std::string("mpm.scheme=") + scheme, std::string("mpm.precision=") + precision}),
+            all);
+  stay_on(all);
+}
+
+}  // namespace flowrest::mpm::bench

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace flowrest::mpm::bench {
+
+/// Prints what all cores give over one, in wall time and stage by stage.
+void print_thread_gain();
+
+}  // namespace flowrest::mpm::bench
