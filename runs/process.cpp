@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -80,6 +81,15 @@ std::optional<fs::path> find_program(const std::string& name) {
   return std::nullopt;
 }
 
+std::string last_words(const fs::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);)
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  const std::string prefix = "flowrest: ";
+  return last.starts_with(prefix) ? last.substr(prefix.size()) : last;
+}
+
 std::string ProcessEnd::how() const {
   return signal != 0 ? fmt::format("signal {} ({})", signal, strsignal(signal))
                      : fmt::format("exit code {}", exit_code);
@@ -95,16 +105,29 @@ Process::Process(const fs::path& program, const std::vector<std::string>& argume
   const auto environment_pointers = pointers(environment_texts);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) throw RunError(fmt::format("{}: cannot be written: {}", log.string(), std::strerror(errno)));
+  int word[2];  // by which the child says why it has not become the program; closed by its becoming it
+  if (pipe2(word, O_CLOEXEC) != 0) {
+    close(file);
+    throw RunError(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno)));
+  }
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {
     become(program.c_str(), const_cast<char**>(argument_pointers.data()),
            const_cast<char**>(environment_pointers.data()), directory.c_str(), file, parent);
-    _exit(127);
+    const int reason = errno;
+    const bool told = write(word[1], &reason, sizeof reason) == static_cast<ssize_t>(sizeof reason);
+    _exit(told ? 127 : 126);
   }
+  int reason = pid_ < 0 ? errno : 0;
   close(file);
-  if (pid_ < 0)
-    throw RunError(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno)));
+  close(word[1]);
+  while (pid_ > 0 && read(word[0], &reason, sizeof reason) < 0 && errno == EINTR) continue;
+  close(word[0]);
+  if (reason != 0) {
+    if (pid_ > 0) waitpid(pid_, nullptr, 0);
+    throw MissingProgram(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(reason)));
+  }
   setpgid(pid_, pid_);  // also here: whichever of the two comes first
 }
 

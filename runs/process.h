@@ -49,6 +49,9 @@ class Process {
   std::optional<ProcessEnd> end_;
 };
 
+/// The last line of a log that says something, without our name before it: what a program ended with.
+std::string last_words(const std::filesystem::path& log);
+
 /// While it lives, SIGINT and SIGTERM are noted instead of ending this process.
 class InterruptGuard {
  public:

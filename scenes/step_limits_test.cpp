@@ -115,6 +115,13 @@ TEST(Cost, GrowsWithWhatIsComputed) {
   EXPECT_NEAR(estimate_foam(load_scene("mix-a-vfunnel-sf0", {})).steps, 4000.0, 800.0);
   EXPECT_NEAR(estimate_foam(load_scene("mix-a-vfunnel-sf0", {{"foam.cell=0.016667"}, {}})).steps, 2900.0,
               600.0);
+  // L-boxes, 3 s: 1,961 steps of a solid on 26.7 mm cells, 896 of a fluid on 20 mm.
+  EXPECT_NEAR(estimate_foam(load_scene("mix-b-lbox-sf600", {{"foam.cell=0.026667", "time.end=3"}, {}})).steps,
+              1961.0, 400.0);
+  EXPECT_NEAR(
+      estimate_foam(load_scene("mix-a-lbox-sf600", {{"material.model=papanastasiou", "time.end=3"}, {}}))
+          .steps,
+      896.0, 300.0);
 }
 
 TEST(FreeFallSpeed, IsThatOfTheBodysHeight) {

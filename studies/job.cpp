@@ -27,16 +27,6 @@ Json read_json(const fs::path& path) {
   return file ? Json::parse(file, nullptr, false) : Json(Json::value_t::discarded);
 }
 
-/// The last line of a log that says something: what a program ended with.
-std::string last_words(const fs::path& log) {
-  std::ifstream file(log);
-  std::string last;
-  for (std::string line; std::getline(file, line);)
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  const std::string prefix = "flowrest: ";
-  return last.starts_with(prefix) ? last.substr(prefix.size()) : last;
-}
-
 /// The settings that a run of this solver hangs on: neither what its scene is called, nor which runs it
 /// names, nor the other solver's settings, nor what only another law reads.
 Json bearing_on(const std::string& solver, Json settings) {
@@ -151,7 +141,7 @@ Outcome outcome_of_end(const Folder& folder, const Job& job, const runs::Process
   if (end.exit_code == interrupted) return {};
   const Outcome said = ending_in(folder.run(job.id), job.solver, job.settings);
   if ((end.exit_code == 0 || end.exit_code == failed) && said.ending != Ending::missing) return said;
-  const std::string why = last_words(folder.log(job.id));
+  const std::string why = runs::last_words(folder.log(job.id));
   if (end.exit_code == refused) return {Ending::refused, why};
   return {Ending::crashed, fmt::format("{}: {}", end.how(), why)};
 }
@@ -179,7 +169,7 @@ Outcome attempt(const Folder& folder, const Job& job, bool begun, Clock::time_po
   const runs::ProcessEnd end = *process.poll();
   constexpr int program_missing = 4;
   if (end.exit_code == program_missing && end.signal == 0)
-    throw runs::MissingProgram(last_words(folder.log(job.id)));
+    throw runs::MissingProgram(runs::last_words(folder.log(job.id)));
   return outcome_of_end(folder, job, end, too_long);
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <fstream>
-
 #include "runs/process.h"
 
 namespace flowrest::studies::verification {
@@ -29,13 +27,8 @@ runs::Run run_scene(const std::string& scene, const std::vector<std::string>& se
       asked = true;
     }
   if (asked) throw runs::NumericsError("interrupted");
-  if (!process.poll()->good()) {
-    std::ifstream file(log);
-    std::string last;
-    for (std::string line; std::getline(file, line);)
-      if (!line.empty()) last = line;
-    throw runs::NumericsError(last);
-  }
+  const runs::ProcessEnd end = *process.poll();
+  if (!end.good()) throw runs::NumericsError(fmt::format("{}: {}", end.how(), runs::last_words(log)));
   return runs::read_run(directory);
 }
 
