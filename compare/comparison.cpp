@@ -178,6 +178,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   comparison.stops = stop_times(options, comparison.end);
 
   for (RunView& view : comparison.runs) measure(view, comparison);
+  measure_approach(comparison);
   measure_overshoot(comparison);
   measure_uncertainty(comparison);
   compare_pairs(comparison);

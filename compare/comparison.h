@@ -64,6 +64,9 @@ struct Measures {
   std::optional<double> residual;  ///< m/s: growth of the spread, or plug velocity, over the last seconds
   std::optional<double> residual_scatter;  ///< of the gauge about its trend there
   std::optional<double> predicted_creep;   ///< m/s, what the regularisation alone would leave
+  /// m/s, at which the exact material still approaches rest at the end: of a thin film with the pull of its
+  /// plug, and without. Of those slumps alone that move and do not creep.
+  std::optional<double> approach_least, approach_most;
   Cause cause = Cause::unknown;
   std::optional<double> overshoot_reference;        ///< m, the arrested spread overshoots are counted from
   std::string overshoot_reference_run;              ///< its label

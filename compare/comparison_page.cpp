@@ -395,7 +395,9 @@ std::string residual_caption(const Comparison& comparison) {
       "similar then grows in "
       "diameter by 4 u. Past the arrested radius the base stress falls with its fifth power, and the creep "
       "with it. A run of "
-      "a law that comes to rest has no predicted creep.",
+      "a law that comes to rest has no predicted creep. Exact: how fast a thin film of the exact material "
+      "still approaches rest at that time, with the pull of its plug and without, where creep does not "
+      "explain what moves.",
       comparison.options.residual_window);
 }
 
@@ -431,6 +433,13 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
           const auto& creep = view.measures.predicted_creep;
           return creep && *creep > 0.0 ? Table::Cell(std::abs(*view.measures.residual) / *creep)
                                        : Table::Cell();
+        }},
+       {{"Exact", unit, {}, true},
+        [scale](const RunView& view) {
+          const Measures& m = view.measures;
+          return m.approach_most ? Table::Cell(fmt::format("{:.2g} to {:.2g}", scale * *m.approach_least,
+                                                           scale * *m.approach_most))
+                                 : Table::Cell();
         }},
        measure_column("Scatter", unit_of(comparison), significant(2), &Measures::residual_scatter, scale),
        {{"Cause", "", {}, true},

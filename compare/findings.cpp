@@ -42,6 +42,12 @@ std::string noise_clause(const RunView& view) {
   return view.noisy ? fmt::format("; noisy: {}", view.noise) : "";
 }
 
+/// "still grows by 0.10 to 0.15 mm/s then": a thin film of the exact material.
+std::string approach_words(const Measures& m) {
+  return fmt::format("still grows by {:.2g} to {} then", 1e3 * *m.approach_least,
+                     words::speed(*m.approach_most));
+}
+
 /// What an elasto-viscoplastic body came to.
 std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
   const std::string& gauge = gauge_of(comparison.kind).name;
@@ -58,9 +64,12 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
   if (m.cause == Cause::at_rest && rest)
     return fmt::format("{} has all but stopped by {} and ends with a {} of {}{}.", view.label,
                        words::time(*rest), gauge, end_of(comparison, view), noise);
-  return fmt::format("{} has not come to rest by {}: its {} is {}{}{}.", view.label, words::time(*m.end),
+  const std::string exact =
+      m.approach_most ? fmt::format(", where a thin film of it {}", approach_words(m)) : "";
+  return fmt::format("{} has not come to rest by {}: its {} is {}{}{}{}.", view.label, words::time(*m.end),
                      gauge, end_of(comparison, view),
-                     m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", noise);
+                     m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", exact,
+                     noise);
 }
 
 /// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
@@ -108,7 +117,7 @@ const Pair::At* last_gauged(const Pair& pair) {
 
 /// What still moves, held against what the regularisation alone predicts.
 std::string cause_sentence(const Comparison& comparison) {
-  std::vector<std::string> creep, either, noise, unexplained;
+  std::vector<std::string> creep, approach, either, noise, unexplained;
   const auto speed = [&](double value) {
     return grows_to_rest(comparison.kind) ? words::speed(value) : words::velocity(value);
   };
@@ -118,6 +127,10 @@ std::string cause_sentence(const Comparison& comparison) {
     const std::string part = fmt::format("{} ({} of {} predicted)", view.label, speed(std::abs(*m.residual)),
                                          speed(*m.predicted_creep));
     if (m.cause == Cause::creep) creep.push_back(part);
+    if (m.cause == Cause::approaching_rest)
+      approach.push_back(fmt::format("{} ({}; exact material {}, its creep {})", view.label,
+                                     speed(std::abs(*m.residual)), approach_words(m),
+                                     speed(*m.predicted_creep)));
     if (m.cause == Cause::creep_or_noise) either.push_back(part);
     if (m.cause == Cause::noise) noise.push_back(part);
     if (m.cause == Cause::unexplained) unexplained.push_back(part);
@@ -128,6 +141,7 @@ std::string cause_sentence(const Comparison& comparison) {
   };
   add(creep, fmt::format("What still moves is the creep of the regularisation, within a factor of {:.3g}",
                          comparison.options.creep_factor));
+  add(approach, "What still moves is the exact material's own approach to rest, and creep");
   add(either, "Creep of the regularisation or noise, which cannot be told apart here");
   add(noise, "Noise of the numerics, beyond what the regularisation explains");
   add(unexplained, "Faster than the regularisation explains, though no noise was reported");

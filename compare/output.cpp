@@ -42,6 +42,8 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
     json["residual_mm_s"] = scaled(m.residual, 1e3);
     json["residual_scatter_mm"] = scaled(m.residual_scatter, 1e3);
     json["predicted_creep_mm_s"] = scaled(m.predicted_creep, 1e3);
+    json["approach_to_rest_least_mm_s"] = scaled(m.approach_least, 1e3);
+    json["approach_to_rest_most_mm_s"] = scaled(m.approach_most, 1e3);
     json["arbitrary_stop_lowest_mm"] = scaled(m.stop_lowest, 1e3);
     json["arbitrary_stop_highest_mm"] = scaled(m.stop_highest, 1e3);
   } else if (kind != scenes::Kind::duct) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "runs/depth.h"
+
 namespace flowrest::compare::exact {
 
 namespace {
@@ -159,6 +161,27 @@ void SpreadingFilm::advance_to(double time) {
     state_.time = step < time - state_.time ? state_.time + step : time;
     if (step == step_) step_ = std::min(growth * step_, std::max(1e-5, step_over_time * state_.time));
   }
+}
+
+Approach approach_to_rest(const Bingham& material, double gravity, double radius, double volume,
+                          double domain_radius, double time) {
+  constexpr int rings = 450;
+  const auto speed = [&](bool plug_pulls) {
+    SpreadingFilm film(
+        [&](double depth, double slope) {
+          if (plug_pulls) slope = slope_under_plug(material, gravity, depth, slope);
+          return film_flux(material, gravity, depth, slope);
+        },
+        radius, volume, domain_radius, rings);
+    const auto spread_at = [&](double t) {
+      film.advance_to(t);
+      return runs::spread(film.state().centres(), film.state().depth);
+    };
+    const double before = spread_at(time / std::numbers::sqrt2),
+                 after = spread_at(time * std::numbers::sqrt2);
+    return (after - before) * std::numbers::sqrt2 / time;
+  };
+  return {speed(false), speed(true)};
 }
 
 }  // namespace flowrest::compare::exact

@@ -54,4 +54,14 @@ class SpreadingFilm {
   double step_ = 1e-6;
 };
 
+/// Speed at which the spread of a slump still grows at a time well after its fall, without and with the pull
+/// of its plug: what exact Bingham material does as it approaches rest. m/s
+struct Approach {
+  double film = 0.0, under_plug = 0.0;
+};
+/// By SpreadingFilm from the cone's foot, over as long as makes the width of its rings matter little: with
+/// D = D_rest - c / t the speed c / t^2 is sqrt(2) (D(sqrt(2) t) - D(t / sqrt(2))) / t.
+Approach approach_to_rest(const Bingham&, double gravity, double radius, double volume, double domain_radius,
+                          double time);
+
 }  // namespace flowrest::compare::exact

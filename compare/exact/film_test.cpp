@@ -157,5 +157,20 @@ TEST(Film, LeavesARunOfWhatAScenesMaterialDoes) {
   EXPECT_FALSE(std::filesystem::exists(directory));
 }
 
+TEST(Film, TheSpeedOfItsApproachIsTheSlopeOfAFinerFilm) {
+  const Approach at_60 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 60.0);
+  // Over a decade, so that rings do not matter: spread = rest - c / t.
+  SpreadingFilm film = bingham_film(900);
+  const double early = spread_at(film, 30.0), late = spread_at(film, 120.0);
+  const double c = (late - early) / (1.0 / 30.0 - 1.0 / 120.0);
+  EXPECT_NEAR(at_60.film / (c / 3600.0), 1.0, 0.1);
+  // The plug's pull leaves it less to go.
+  EXPECT_LT(at_60.under_plug, 0.85 * at_60.film);
+  EXPECT_GT(at_60.under_plug, 0.4 * at_60.film);
+  // As 1 / t^2.
+  const Approach at_120 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 120.0);
+  EXPECT_NEAR(at_60.film / at_120.film, 4.0, 1.2);
+}
+
 }  // namespace
 }  // namespace flowrest::compare::exact

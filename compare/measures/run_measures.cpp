@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "compare/exact/creep.h"
+#include "compare/exact/film.h"
 #include "compare/exact/solutions.h"
 #include "compare/measures/gauges.h"
 #include "compare/run_view.h"
@@ -47,6 +49,30 @@ std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
   return fluid;
 }
 
+/// A slump of yield-stress material about its axis.
+struct SlumpFacts {
+  exact::Bingham material;
+  double gravity = 0.0;
+  scenes::SlumpGeometry cone;
+};
+std::optional<SlumpFacts> slump_facts(const RunView& view) {
+  const auto density = setting(view, "/material/density");
+  const auto yield_stress = setting(view, "/material/yield_stress");
+  const auto viscosity = setting(view, "/material/plastic_viscosity");
+  const auto gravity = setting(view, "/forces/gravity");
+  const auto top = setting(view, "/geometry/cone_radius_top");
+  const auto bottom = setting(view, "/geometry/cone_radius_bottom");
+  const auto height = setting(view, "/geometry/cone_height");
+  const auto domain = setting(view, "/geometry/domain_radius");
+  if (!density || !yield_stress || !viscosity || !gravity || !top || !bottom || !height ||
+      !(*yield_stress > 0.0) || !(*gravity > 0.0))
+    return std::nullopt;
+  if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
+  return SlumpFacts{{*density, *yield_stress, *viscosity},
+                    *gravity,
+                    scenes::SlumpGeometry{*height, *top, *bottom, domain.value_or(0.0), 0.0, {}}};
+}
+
 std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
   if (!view.fluid) return 0.0;
   const auto fluid = regularised_fluid(view);
@@ -59,17 +85,9 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
       return std::nullopt;
     return exact::duct_creep(*fluid, *height, stages.back().second);
   }
-  const auto density = setting(view, "/material/density");
-  const auto gravity = setting(view, "/forces/gravity");
-  const auto top = setting(view, "/geometry/cone_radius_top");
-  const auto bottom = setting(view, "/geometry/cone_radius_bottom");
-  const auto height = setting(view, "/geometry/cone_height");
-  if (!density || !gravity || !top || !bottom || !height || !(fluid->yield_stress > 0.0) || !(*gravity > 0.0))
-    return std::nullopt;
-  if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
-  const scenes::SlumpGeometry cone{*height, *top, *bottom, 0.0, 0.0, {}};
-  const auto slump = exact::leading_order_slump({*density, fluid->yield_stress, fluid->plastic_viscosity},
-                                                *gravity, cone.volume());
+  const auto facts = slump_facts(view);
+  if (!facts) return std::nullopt;
+  const auto slump = exact::leading_order_slump(facts->material, facts->gravity, facts->cone.volume());
   return exact::spread_creep(*fluid, slump.radius, slump.depth(0.5 * slump.radius),
                              view.gauge.empty() ? slump.radius : 0.5 * view.gauge.value.back());
 }
@@ -222,6 +240,40 @@ void measure(RunView& view, const Comparison& comparison) {
     if (!value) continue;
     m.stop_lowest = std::min(m.stop_lowest.value_or(*value), *value);
     m.stop_highest = std::max(m.stop_highest.value_or(*value), *value);
+  }
+}
+
+void measure_approach(Comparison& comparison) {
+  if (comparison.kind != scenes::Kind::slump) return;
+  // Before that, a slump's inertia and its start decide.
+  constexpr double earliest = 5.0;  // s
+  std::map<std::vector<double>, exact::Approach> known;
+  for (RunView& view : comparison.runs) {
+    Measures& m = view.measures;
+    const bool moves =
+        m.cause == Cause::approaching_rest || m.cause == Cause::within_bound || m.cause == Cause::unexplained;
+    if (view.exact || !moves) continue;
+    const auto facts = slump_facts(view);
+    const bool film = facts && facts->cone.domain_radius > 0.0 && facts->material.plastic_viscosity > 0.0 &&
+                      word(view.run.info, "/settings/walls/base") == "no-slip" &&
+                      !view.run.info.contains(Json::json_pointer("/settings/thixotropy"));
+    if (!film || !m.end || *m.end < earliest) continue;
+    const auto& [material, gravity, cone] = *facts;
+    const double end = std::round(*m.end);
+    const std::vector<double> key = {
+        material.density,        material.yield_stress, material.plastic_viscosity, gravity,
+        cone.cone_radius_bottom, cone.volume(),         cone.domain_radius,         end};
+    auto found = known.find(key);
+    if (found == known.end())
+      found = known
+                  .emplace(key, exact::approach_to_rest(material, gravity, cone.cone_radius_bottom,
+                                                        cone.volume(), cone.domain_radius, end))
+                  .first;
+    m.approach_least = std::min(found->second.film, found->second.under_plug);
+    m.approach_most = std::max(found->second.film, found->second.under_plug);
+    if (m.cause == Cause::unexplained && *m.residual >= 0.0 &&
+        *m.residual <= *m.approach_most + comparison.options.creep_factor * *m.predicted_creep)
+      m.cause = Cause::approaching_rest;
   }
 }
 

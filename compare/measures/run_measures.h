@@ -8,6 +8,10 @@ namespace flowrest::compare {
 /// Fills the run's measures, all but those that need other runs.
 void measure(RunView&, const Comparison&);
 
+/// How fast the exact material would still approach rest, of slumps that move and do not creep; fluids whose
+/// speed beyond that is within the factor of their creep are said to approach rest.
+void measure_approach(Comparison&);
+
 /// How far each slump stands past the arrested spread of an elasto-viscoplastic run.
 void measure_overshoot(Comparison&);
 
