@@ -1,7 +1,5 @@
 #pragma once
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -96,11 +94,10 @@ class Particles {
   void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan) {
     const int threads = static_cast<int>(plan.departing_end.size());
     departed_.resize(plan.departing.size() * arrays_.size());
-#pragma omp parallel num_threads(threads)
-    {
-      const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-      const std::size_t end = plan.departing_end[thread];
-      for (std::size_t i = thread == 0 ? 0 : plan.departing_end[thread - 1]; i < end; ++i)
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int share = 0; share < threads; ++share) {
+      const auto own = static_cast<std::size_t>(share);
+      for (std::size_t i = own == 0 ? 0 : plan.departing_end[own - 1]; i < plan.departing_end[own]; ++i)
         for (std::size_t k = 0; k < arrays_.size(); ++k)
           departed_[i * arrays_.size() + k] = arrays_[k][plan.departing[i]];
     }

@@ -1,7 +1,5 @@
 #include "mpm/solver/sparse_blocks.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <numeric>
 
@@ -199,9 +197,6 @@ void SparseBlocks::depart(std::uint32_t from) {
 }
 
 const SparseBlocks::Relocation& SparseBlocks::relocate(const BlockShares& shares) {
-  const auto is_own = [&](std::uint32_t slot) {
-    return shares.owner(slots_[slot].arena) == omp_get_thread_num();
-  };
   relocation_.held.clear();
   relocation_.departing.clear();
   relocation_.departing_end.assign(static_cast<std::size_t>(shares.threads()), 0);
@@ -228,14 +223,16 @@ const SparseBlocks::Relocation& SparseBlocks::relocate(const BlockShares& shares
 #pragma omp parallel num_threads(shares.threads()) reduction(max : fullest) reduction(|| : emptied)
   {
     std::vector<std::uint32_t> links;
-    for (const auto slot : touched_) {
-      if (!is_own(slot)) continue;
-      Slot& s = slots_[slot];
-      plan_reordering(s, links);
-      s.touched = false;
-      emptied = emptied || s.count() == 0;
-      for (std::size_t c = 0; c < 64; ++c) fullest = std::max(fullest, s.start[c + 1] - s.start[c]);
-    }
+#pragma omp for schedule(static, 1)
+    for (int share = 0; share < shares.threads(); ++share)
+      for (const auto slot : touched_) {
+        Slot& s = slots_[slot];
+        if (shares.owner(s.arena) != share) continue;
+        plan_reordering(s, links);
+        s.touched = false;
+        emptied = emptied || s.count() == 0;
+        for (std::size_t c = 0; c < 64; ++c) fullest = std::max(fullest, s.start[c + 1] - s.start[c]);
+      }
   }
   fullest_cell_ = std::max<std::size_t>(fullest_cell_, fullest);
   relocation_.other_blocks = relocation_.other_blocks || emptied;
