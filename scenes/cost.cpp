@@ -73,19 +73,18 @@ double unhurried_foam_steps(const Scene& scene) {
 }
 
 /// Steps of an OpenFOAM run. Out of a funnel concrete falls, and air behind it, for as long as the run lasts,
-/// and leaves the mesh shortly below the outlet. Between an L-box's bars cells are half a radius wide, and
-/// what passes there does so at a share of the fall's speed that was measured (of the elasto-viscoplastic law
-/// the larger: it moves the air for as long as it runs).
+/// and leaves the mesh shortly below the outlet. What passes between an L-box's bars, where cells are
+/// smallest, does so at a share of the fall's speed that was measured of the elasto-viscoplastic law; a
+/// fluid's steps are smaller than that asks for.
 double foam_steps(const Scene& scene) {
   const double unhurried = unhurried_foam_steps(scene);
-  double speed = std::sqrt(2.0 * scene.forces.gravity * scene.body_height()), cell = scene.foam.cell;
-  if (scene.kind == Kind::l_box && scene.l_box().rebars > 0) {
-    speed *= scene.material.model == Model::elasto_viscoplastic ? 0.15 : 0.05;
-    cell = std::min(cell, scene.l_box().rebar_diameter / 4.0);
-  } else if (scene.kind != Kind::v_funnel) {
+  constexpr double between_bars = 0.15;
+  double speed = std::sqrt(2.0 * scene.forces.gravity * scene.body_height());
+  if (scene.kind == Kind::l_box && scene.material.model == Model::elasto_viscoplastic)
+    speed *= between_bars;
+  else if (scene.kind != Kind::v_funnel)
     return unhurried;
-  }
-  return std::max(unhurried, scene.time.end * speed / (scene.foam.max_courant * cell));
+  return std::max(unhurried, scene.time.end * speed / (scene.foam.max_courant * smallest_foam_cell(scene)));
 }
 
 }  // namespace

@@ -145,16 +145,22 @@ MpmEstimate estimate_mpm(const Scene& scene) {
   return estimate;
 }
 
+double smallest_foam_cell(const Scene& scene) {
+  const bool bars = scene.kind == Kind::l_box && scene.l_box().rebars > 0;
+  return bars ? std::min(scene.foam.cell, scene.l_box().rebar_diameter / 4.0) : scene.foam.cell;
+}
+
 double largest_foam_step(const Scene& scene) {
   if (scene.foam.max_time_step) return *scene.foam.max_time_step;
   constexpr double waves_over_cells = 1.5;
   const Material& material = scene.material;
-  const double cell = scene.foam.cell;
   double step = std::min(scene.output.history_interval, scene.output.profile_interval);
   if (material.model == Model::elasto_viscoplastic)
-    return std::min(step, waves_over_cells * cell / std::sqrt(material.shear_modulus() / material.density));
+    return std::min(
+        step, waves_over_cells * scene.foam.cell / std::sqrt(material.shear_modulus() / material.density));
   if (material.plastic_viscosity > 0.0)
-    step = std::min(step, cell * cell * material.density / material.plastic_viscosity);
+    step = std::min(step,
+                    std::pow(smallest_foam_cell(scene), 2) * material.density / material.plastic_viscosity);
   return step;
 }
 
