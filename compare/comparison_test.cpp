@@ -11,6 +11,7 @@
 #include "compare/fields/states.h"
 #include "compare/synthetic_runs.h"
 #include "compare/words.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 using namespace flowrest::compare;
@@ -24,12 +25,6 @@ namespace {
 
 class ComparisonTest : public testing::Test {
  protected:
-  ComparisonTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-compare-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~ComparisonTest() override { fs::remove_all(folder); }
-
   Comparison compared(const Options& options = {}) const {
     return compare_runs(find_runs({folder}), options);
   }
@@ -56,7 +51,8 @@ class ComparisonTest : public testing::Test {
     return slump;
   }
 
-  fs::path folder;
+  runs::TemporaryFolder temporary;
+  fs::path folder = temporary.path();
 };
 
 template <class Function>

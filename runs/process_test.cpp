@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest::runs;
 namespace fs = std::filesystem;
@@ -15,13 +16,9 @@ namespace {
 
 class ProcessTest : public testing::Test {
  protected:
-  ProcessTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-process-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ProcessTest() override { fs::remove_all(folder_); }
   fs::path log() const { return folder_ / "log"; }
-  fs::path folder_;
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "runs/temporary_folder.h"
+
 using namespace flowrest;
 using namespace flowrest::runs;
 namespace fs = std::filesystem;
@@ -34,12 +36,6 @@ std::string message_of(Function function) {
 
 class RunDirectory : public testing::Test {
  protected:
-  RunDirectory() : scene(scenes::load_scene("roussel-slump")) {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-runs-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~RunDirectory() override { fs::remove_all(folder); }
-
   /// A run with history at 0, 0.1, ..., 0.9 s and a profile of three points at 0 and 0.5 s.
   void write_run(const fs::path& directory, Status status = Status::end_time) {
     RunWriter writer(directory, scene, "mpm");
@@ -50,8 +46,9 @@ class RunDirectory : public testing::Test {
     writer.finish(status, "", "sound");
   }
 
-  scenes::Scene scene;
-  fs::path folder;
+  scenes::Scene scene = scenes::load_scene("roussel-slump");
+  TemporaryFolder temporary;
+  fs::path folder = temporary.path();
 };
 
 }  // namespace

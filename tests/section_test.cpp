@@ -12,6 +12,7 @@
 #include "mpm/sampling/sampling.h"
 #include "mpm/solver/settings.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 namespace fs = std::filesystem;
@@ -20,12 +21,6 @@ namespace {
 
 class SectionTest : public testing::Test {
  protected:
-  SectionTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-section-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~SectionTest() override { fs::remove_all(folder); }
-
   /// A slump after no step and after some, with snapshots of both.
   void write_run(const fs::path& directory, bool snapshots) {
     const auto scene = scenes::load_scene("roussel-slump", {{"mpm.cell=0.02", "mpm.threads=1"}, {}});
@@ -43,7 +38,8 @@ class SectionTest : public testing::Test {
     writer.finish(runs::Status::end_time, "", "sound");
   }
 
-  fs::path folder;
+  runs::TemporaryFolder temporary;
+  fs::path folder = temporary.path();
   std::unique_ptr<mpm::Solver> solver;
 };
 

@@ -16,6 +16,7 @@
 #include "mpm/output/snapshot.h"
 #include "mpm/sampling/sampling.h"
 #include "mpm/solver/settings.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 namespace fs = std::filesystem;
@@ -26,8 +27,6 @@ namespace {
 class SnapshotInVtk : public testing::TestWithParam<std::string> {
  protected:
   SnapshotInVtk() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-vtk-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
     const bool solid = GetParam() == "quarter" || GetParam() == "full";
     const auto scene = scenes::load_scene(
         "roussel-slump", {{"geometry.dimension=" + GetParam(), "mpm.cell=0.02", "mpm.threads=1",
@@ -40,9 +39,9 @@ class SnapshotInVtk : public testing::TestWithParam<std::string> {
     for (int i = 0; i < 20; ++i) solver->step(1e-3, mpm::acceleration_at(scene, 0.0));
     mpm::SnapshotWriter(folder, scene, -1.0).write(0.02, *solver);
   }
-  ~SnapshotInVtk() override { fs::remove_all(folder); }
 
-  fs::path folder;
+  runs::TemporaryFolder temporary;
+  fs::path folder = temporary.path();
   mpm::SolverSettings settings;
   std::unique_ptr<mpm::Solver> solver;
 };

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "runs/process.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 using testing::HasSubstr;
@@ -23,12 +24,6 @@ constexpr double longest_wait = 300.0;  // s; only what hangs takes as long
 
 class ValidateTest : public testing::Test {
  protected:
-  ValidateTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-validate-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~ValidateTest() override { fs::remove_all(folder); }
-
   void SetUp() override {
     if (!runs::find_program("snakemake"))
       GTEST_SKIP() << "Snakemake is not installed (apt-get install snakemake)";
@@ -58,7 +53,8 @@ class ValidateTest : public testing::Test {
     return times;
   }
 
-  fs::path folder;
+  runs::TemporaryFolder temporary;
+  fs::path folder = temporary.path();
 };
 
 }  // namespace

@@ -163,12 +163,8 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
   const Bingham material = material_of(scene);
   const auto& cone = scene.slump();
   const double gravity = scene.forces.gravity;
-  SpreadingFilm film(
-      [&](double depth, double slope) {
-        if (plug_pulls) slope = slope_under_plug(material, gravity, depth, slope);
-        return film_flux(material, gravity, depth, slope);
-      },
-      cone.cone_radius_bottom, cone.volume(), cone.domain_radius, rings);
+  SpreadingFilm film = bingham_film(material, gravity, cone.cone_radius_bottom, cone.volume(),
+                                    cone.domain_radius, rings, plug_pulls);
   runs::RunWriter writer(directory, scene, "exact");
   writer.info()["model"] = "bingham";
   const std::string label = plug_pulls ? "thin film under its plug's pull, Bingham" : "thin film, Bingham";

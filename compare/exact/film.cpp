@@ -163,16 +163,20 @@ void SpreadingFilm::advance_to(double time) {
   }
 }
 
+SpreadingFilm bingham_film(const Bingham& material, double gravity, double radius, double volume,
+                           double domain_radius, int rings, bool plug_pulls) {
+  return {[=](double depth, double slope) {
+            if (plug_pulls) slope = slope_under_plug(material, gravity, depth, slope);
+            return film_flux(material, gravity, depth, slope);
+          },
+          radius, volume, domain_radius, rings};
+}
+
 Approach approach_to_rest(const Bingham& material, double gravity, double radius, double volume,
                           double domain_radius, double time) {
   constexpr int rings = 450;
   const auto speed = [&](bool plug_pulls) {
-    SpreadingFilm film(
-        [&](double depth, double slope) {
-          if (plug_pulls) slope = slope_under_plug(material, gravity, depth, slope);
-          return film_flux(material, gravity, depth, slope);
-        },
-        radius, volume, domain_radius, rings);
+    SpreadingFilm film = bingham_film(material, gravity, radius, volume, domain_radius, rings, plug_pulls);
     const auto spread_at = [&](double t) {
       film.advance_to(t);
       return runs::spread(film.state().centres(), film.state().depth);

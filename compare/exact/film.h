@@ -54,6 +54,10 @@ class SpreadingFilm {
   double step_ = 1e-6;
 };
 
+/// The film of a slump of Bingham material, let go as a cylinder; with the pull of its plug or without.
+SpreadingFilm bingham_film(const Bingham&, double gravity, double radius, double volume, double domain_radius,
+                           int rings, bool plug_pulls);
+
 /// Speed at which the spread of a slump still grows at a time well after its fall, without and with the pull
 /// of its plug: what exact Bingham material does as it approaches rest. m/s
 struct Approach {

@@ -17,8 +17,7 @@ constexpr double gravity = 9.81;
 constexpr double volume = 5.49779e-3;  // m3
 
 SpreadingFilm bingham_film(int rings = 225) {
-  return {[](double depth, double slope) { return film_flux(roussel, gravity, depth, slope); }, 0.1, volume,
-          0.45, rings};
+  return bingham_film(roussel, gravity, 0.1, volume, 0.45, rings, false);
 }
 
 SpreadingFilm regularised_film(RegularisedFluid::Law law, double time, int rings = 90) {
@@ -88,11 +87,7 @@ TEST(Film, APlugsPullActsAsLessSlope) {
 /// Under its plug's pull a film comes to the second-order slump: 4 cm in spread from the leading-order one,
 /// and found to a ring or two.
 TEST(Film, UnderItsPlugsPullApproachesTheSecondOrderShape) {
-  SpreadingFilm film(
-      [](double depth, double slope) {
-        return film_flux(roussel, gravity, depth, slope_under_plug(roussel, gravity, depth, slope));
-      },
-      0.1, volume, 0.45, 225);
+  SpreadingFilm film = bingham_film(roussel, gravity, 0.1, volume, 0.45, 225, true);
   const auto arrested = second_order_slump(roussel, gravity, volume);
   EXPECT_LT(arrested.spread(0.003), leading_order_slump(roussel, gravity, volume).spread(0.003) - 0.02);
   double earlier = 0.0;
@@ -159,7 +154,7 @@ TEST(Film, LeavesARunOfWhatAScenesMaterialDoes) {
 
 TEST(Film, TheSpeedOfItsApproachIsTheSlopeOfAFinerFilm) {
   const Approach at_60 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 60.0);
-  // Over a decade, so that rings do not matter: spread = rest - c / t.
+  // Over so long that rings do not matter: spread = rest - c / t.
   SpreadingFilm film = bingham_film(900);
   const double early = spread_at(film, 30.0), late = spread_at(film, 120.0);
   const double c = (late - early) / (1.0 / 30.0 - 1.0 / 120.0);

@@ -14,6 +14,7 @@
 #include "compare/report/page.h"
 #include "compare/synthetic_runs.h"
 #include "runs/process.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 using namespace flowrest::compare;
@@ -30,15 +31,6 @@ std::string text_of(const fs::path& path) {
 
 class ReportTest : public testing::Test {
  protected:
-  ReportTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-report-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~ReportTest() override {
-    browser.reset();
-    fs::remove_all(folder);
-  }
-
   /// Two runs, at rest and creeping, one of them noisy, with the exact profiles.
   void write_slump_report() {
     synthetic::Slump arrested;
@@ -72,8 +64,9 @@ class ReportTest : public testing::Test {
       page().screenshot(fs::path(kept) / (name + ".png"));
   }
 
-  std::unique_ptr<report::Browser> browser;
-  fs::path folder;
+  runs::TemporaryFolder temporary;
+  fs::path folder = temporary.path();
+  std::unique_ptr<report::Browser> browser;  // goes before the folder
 };
 
 /// Tests that open the page.

@@ -1,11 +1,9 @@
 #include "mpm/benchmark/feature_costs.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
-#include "mpm/benchmark/flowing_slump.h"
-#include "mpm/benchmark/machine_limits.h"
+#include "mpm/benchmark/turns.h"
 #include "mpm/output/gauges.h"
 #include "mpm/output/run.h"
 
@@ -19,17 +17,7 @@ struct Paired {
   double first_ns = 0.0, ratio = 0.0;  ///< per particle-step of the first; second over first
 };
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
-double time_of(FlowingSlump& slump) {
-  const double begin = cpu_seconds();
-  for (int i = 0; i < steps_per_turn; ++i) slump.advance();
-  return (cpu_seconds() - begin) / (steps_per_turn * slump.particles()) * 1e9;
-}
+double time_of(FlowingSlump& slump) { return time_of_steps(slump, steps_per_turn, cpu_seconds); }
 
 Paired compare(FlowingSlump without, FlowingSlump with_it) {
   std::vector<double> first, ratio;

@@ -3,10 +3,9 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
-#include "mpm/benchmark/flowing_slump.h"
+#include "mpm/benchmark/turns.h"
 
 namespace flowrest::mpm::bench {
 
@@ -14,10 +13,6 @@ namespace {
 
 constexpr int turns = 15;
 constexpr double particle_steps_per_turn = 1e6;
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Cores that this process may use.
 std::vector<int> cores() {
@@ -38,22 +33,13 @@ void stay_on(const std::vector<int>& some) {
   sched_setaffinity(0, sizeof set, &set);
 }
 
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-/// Wall time of a particle-step, ns.
-double time_of(FlowingSlump& slump) {
-  const int steps = std::max(1, static_cast<int>(particle_steps_per_turn / slump.particles()));
-  const double begin = wall_seconds();
-  for (int i = 0; i < steps; ++i) slump.advance();
-  return (wall_seconds() - begin) / (steps * slump.particles()) * 1e9;
-}
-
 /// A core's speed is its own, above all in a virtual machine: one thread is measured on each of them in turn.
 void print_gain(const char* name, const std::vector<std::string>& set, const std::vector<int>& all) {
   const auto threads = static_cast<double>(all.size());
+  const auto time_of = [](FlowingSlump& slump) {
+    const int steps = std::max(1, static_cast<int>(particle_steps_per_turn / slump.particles()));
+    return time_of_steps(slump, steps, wall_seconds);
+  };
   FlowingSlump one(set), together(with(set, {"mpm.threads=" + std::to_string(all.size())}));
   for (const int core : all) {  // until everything is in its place
     stay_on({core});

@@ -11,6 +11,7 @@
 
 #include "mpm/output/run.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 /// Runs small enough for a test, in a folder of their own.
 namespace flowrest::mpm::test {
@@ -41,12 +42,6 @@ inline std::vector<std::string> with(std::vector<std::string> some, const std::v
 /// A test with a temporary folder.
 class RunTest : public testing::Test {
  protected:
-  RunTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "flowrest-mpm-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~RunTest() override { std::filesystem::remove_all(folder); }
-
   RunOptions options(const std::string& name) const {
     RunOptions o;
     o.directory = folder / name;
@@ -59,7 +54,8 @@ class RunTest : public testing::Test {
     return runs::read_run(folder / name);
   }
 
-  std::filesystem::path folder;
+  runs::TemporaryFolder temporary;
+  std::filesystem::path folder = temporary.path();
 };
 
 }  // namespace flowrest::mpm::test

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 namespace flowrest::mpm {
 
@@ -26,27 +25,6 @@ using Point = std::array<double, 3>;
 /// fill space, and those of a Delaunay mesh were measured: 0.194 edge^3 in a quarter of Abrams' cone.
 const double edge_of_unit_triangle = std::sqrt(4.0 / std::sqrt(3.0));
 const double edge_of_unit_tetrahedron = std::cbrt(1.0 / 0.194);
-
-/// A folder that goes when it goes out of scope.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-gmsh-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw runs::RunError(fmt::format("{}: cannot be made", pattern));
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path operator/(const char* name) const { return path_ / name; }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 void write_geometry(const fs::path& file, const MeshedBody& body, double edge) {
   std::ofstream out(file);
@@ -72,14 +50,6 @@ void write_geometry(const fs::path& file, const MeshedBody& body, double edge) {
     fmt::print(out, "Extrude {{0, {:.17g}, 0}} {{ Surface{{1}}; }}\n", body.upper - body.lower);
   }
   fmt::print(out, "Mesh.MeshSizeMin = {0:.17g};\nMesh.MeshSizeMax = {0:.17g};\n", edge);
-}
-
-std::string last_line(const fs::path& log) {
-  std::ifstream in(log);
-  std::string last;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty()) last = line;
-  return last;
 }
 
 Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -168,7 +138,7 @@ std::vector<MeshElement> mesh_by_gmsh(const MeshedBody& body, double size) {
         "jittered do without");
   const double edge = body.dimension == 2 ? edge_of_unit_triangle * std::sqrt(size)
                                           : edge_of_unit_tetrahedron * std::cbrt(size);
-  const TemporaryFolder folder;
+  const runs::TemporaryFolder folder;
   write_geometry(folder / "body.geo", body, edge);
   // One thread, so that the same mesh comes out every time.
   runs::Process process(*program,
@@ -179,9 +149,10 @@ std::vector<MeshElement> mesh_by_gmsh(const MeshedBody& body, double size) {
   while (!end) end = process.wait(60.0);
   if (!end->good())
     throw runs::RunError(
-        fmt::format("gmsh failed ({}) on the body: {}", end->how(), last_line(folder / "log")));
+        fmt::format("gmsh failed ({}) on the body: {}", end->how(), runs::last_words(folder / "log")));
   auto elements = read_gmsh(folder / "body.msh", body.dimension);
-  if (elements.empty()) throw runs::RunError("gmsh made no mesh of the body: " + last_line(folder / "log"));
+  if (elements.empty())
+    throw runs::RunError("gmsh made no mesh of the body: " + runs::last_words(folder / "log"));
   return elements;
 }
 

@@ -86,8 +86,6 @@ class SparseBlocks {
   BlockView view(std::uint32_t slot);
   void follow(BlockView&);
   NodeView node_view(std::uint32_t slot) const;
-  const BlockSums& sums(std::uint32_t slot) const { return slots_[slot].sums; }
-  void clear_sums(std::uint32_t slot) { slots_[slot].sums = {}; }
   std::size_t fullest_cell() const { return fullest_cell_; }
 
   const std::array<std::int32_t, 3>& block(std::uint32_t slot) const { return slots_[slot].block; }

@@ -10,6 +10,7 @@
 #include "compare/report/browser.h"
 #include "compare/synthetic_runs.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 using namespace flowrest::studies;
@@ -21,12 +22,7 @@ namespace {
 
 class ValidationTest : public testing::Test {
  protected:
-  ValidationTest() {
-    std::string pattern = (fs::temp_directory_path() / "flowrest-validation-XXXXXX").string();
-    folder.root = mkdtemp(pattern.data());
-    options.folder = folder.root;
-  }
-  ~ValidationTest() override { fs::remove_all(folder.root); }
+  ValidationTest() { options.folder = folder.root; }
 
   /// A slump that spreads as end (1 - exp(-5 t)) from 200 mm, with flocs that break and, in a fluid, grow
   /// again.
@@ -49,7 +45,8 @@ class ValidationTest : public testing::Test {
         {"ending", "finished"}, {"settings", nlohmann::ordered_json::parse(scenes::resolved_json(scene))}};
   }
 
-  Folder folder;
+  runs::TemporaryFolder temporary;
+  Folder folder{temporary.path()};
   Options options{.scenes = {"mix-a-slump-sf600"}, .solver = Solver::mpm};
 };
 
