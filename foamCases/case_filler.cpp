@@ -265,6 +265,33 @@ std::string vessel_block_mesh(const Scene& scene) {
                                            scene.name, scene.foam.cell));
 }
 
+std::string gate_baffles(const Scene& scene) {
+  const auto gate = gate_of(scene);
+  if (!gate) return "";
+  // A little before the faces it stands for: walls in the same plane are walls already.
+  constexpr double before = 1e-5, beyond = 1e-3;  // m
+  const auto& [low, high, velocity] = *gate;
+  return fmt::format(
+      "// The gate of the scene '{}': `flowrest foam` writes this. Each of its faces becomes a wall to "
+      "either "
+      "side and a\n// pair of openings upon it, which liftedGate gives their areas.\n\n"
+      "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       dictionary;\n"
+      "    object      createBafflesDict;\n}}\n\n"
+      "internalFacesOnly   false;\nnoFields            true;\n\n"
+      "baffles\n{{\n    gate\n    {{\n        type        searchableSurface;\n"
+      "        surface     searchablePlate;\n        origin      ({:g} {:g} {:g});\n        span        "
+      "({:g} {:g} "
+      "{:g});\n"
+      "        patches\n        {{\n"
+      "            behind         {{ name gateBehind; type wall; }}\n"
+      "            before         {{ name gateBefore; type wall; }}\n"
+      "            openingBehind  {{ name openingBehind; type cyclic; neighbourPatch openingBefore; }}\n"
+      "            openingBefore  {{ name openingBefore; type cyclic; neighbourPatch openingBehind; }}\n"
+      "        }}\n    }}\n}}\n",
+      scene.name, low[0] + before, low[1] - beyond, low[2] - beyond, 0.0, high[1] - low[1] + 2.0 * beyond,
+      high[2] - low[2] + beyond);
+}
+
 void check_supported(const Scene& scene) {
   check_model(scene);
   if (scene.kind == scenes::Kind::duct) {
@@ -346,6 +373,9 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
     fs::remove_all(directory / "constant" / "polyMesh");
     if (is_quarter(scene)) write_initial_fraction(scene, directory / "0.orig" / "alpha.concrete");
     if (is_vessel(scene)) write_text(directory / "system" / "blockMeshDict", vessel_block_mesh(scene));
+    const fs::path baffles = directory / "system" / "createBafflesDict";
+    fs::remove(baffles);
+    if (gate_of(scene)) write_text(baffles, gate_baffles(scene));
     fs::remove_all(directory / "0");
     fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
     fs::remove(directory / plug_in_link);

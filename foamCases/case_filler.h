@@ -29,6 +29,9 @@ std::string initial_fraction(const scenes::Scene&);
 /// The blockMeshDict of an L-box, a V-funnel or a dam break.
 std::string vessel_block_mesh(const scenes::Scene&);
 
+/// The createBafflesDict that lays an L-box's gate between the cells; empty without one.
+std::string gate_baffles(const scenes::Scene&);
+
 /// Cells of the scene's mesh.
 std::size_t mesh_cells(const scenes::Scene&);
 

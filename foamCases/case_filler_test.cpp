@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "foamCases/test_scene.h"
+#include "foamCases/vessel_mesh.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
 #include "scenes/step_limits.h"
@@ -95,6 +96,8 @@ TEST(CaseFiller, TheCommittedVesselsAreScenesOnCoarseCells) {
         << "` writes with --set foam.cell=" << scene.foam.cell << " --model "
         << scenes::to_string(scene.material.model);
     EXPECT_EQ(text_of(cases_folder() / kind / "system" / "blockMeshDict"), vessel_block_mesh(scene));
+    const auto baffles = cases_folder() / kind / "system" / "createBafflesDict";
+    EXPECT_EQ(std::filesystem::exists(baffles) ? text_of(baffles) : "", gate_baffles(scene));
   }
 }
 
@@ -108,6 +111,24 @@ TEST(CaseFiller, AVesselsConcreteStandsInABoxBetweenWallsOfTheScene) {
         "endTime             3;", "type            shearRate;", "flocculation plasticShearRate"})
     EXPECT_THAT(text, HasSubstr(entry));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("airRises")));
+}
+
+TEST(CaseFiller, AGateIsAPlateBeforeTheOpeningOfAnLBoxThatHasOne) {
+  auto scene = scenes::load_scene("mix-a-lbox-sf0", {{"geometry.gate_lift_velocity=0.3"}, std::nullopt});
+  EXPECT_THAT(scene_parameters(scene, true), HasSubstr("velocity        0.3;  // m/s"));
+  EXPECT_THAT(gate_baffles(scene), HasSubstr("origin      (0.10001 -0.001 -0.001);"));
+  auto open = scene.l_box();
+  open.gate_lift_velocity.reset();
+  scene.geometry.shape = open;
+  EXPECT_THAT(scene_parameters(scene, true), ::testing::Not(HasSubstr("liftedGate")));
+  EXPECT_EQ(gate_baffles(scene), "");
+  // A case that was filled with a gate is filled again without.
+  const TemporaryFolder folder;
+  const std::filesystem::path plug_in = "libflowrestRheology.so";
+  fill_case(committed_vessel("l-box"), folder.path(), plug_in);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "system" / "createBafflesDict"));
+  fill_case(scene, folder.path(), plug_in);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "system" / "createBafflesDict"));
 }
 
 TEST(CaseFiller, TakesEveryNumberFromTheScene) {

@@ -138,6 +138,15 @@ std::string staged_step(const Scene& scene) {
                                      scenes::foam_step_of_time, cells_per_second * scene.foam.cell));
 }
 
+/// The plate that createBafflesDict lays between the cells.
+std::string lifted_gate(const Gate& gate) {
+  return function_object(
+      "liftedGate", fmt::format("        walls           (gateBehind gateBefore);\n"
+                                "        openings        (openingBehind openingBefore);\n"
+                                "        velocity        {};  // m/s\n        edge            {};  // m\n",
+                                gate.velocity, gate.low[2]));
+}
+
 /// What is done to the concrete after every step, or read off it.
 std::string after_every_step(const Scene& scene, bool plug_in) {
   std::string text;
@@ -147,6 +156,7 @@ std::string after_every_step(const Scene& scene, bool plug_in) {
   if (plug_in && scene.kind == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
     text += function_object("airRises",
                             fmt::format("        time            {};  // s\n", *scene.foam.air_rise_time));
+  if (const auto gate = gate_of(scene)) text += lifted_gate(*gate);
   if (plug_in) text += staged_step(scene);
   return fmt::format("afterEveryStep\n{{\n{}}}\n", text);
 }

@@ -68,6 +68,7 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
     programs.prepare.push_back({needed_program("setAlphaField"), {}});
     programs.prepare.push_back({needed_program("setFields"), {}});
   }
+  if (gate_of(scene)) programs.prepare.push_back({needed_program("createBaffles"), {"-overwrite"}});
   if (is_vessel(scene)) programs.prepare.push_back({needed_program("setFields"), {}});
   programs.solve = {needed_program("interFoam"), {}};
   if (ranks <= 1) return programs;
@@ -110,8 +111,6 @@ std::string components(const scenes::Scene& scene) {
 std::string walls_differ(const scenes::Scene& scene) {
   if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity)
     return "no mould: the cone is released at once";
-  if (scene.kind == scenes::Kind::l_box && scene.l_box().gate_lift_velocity)
-    return "no gate: the reservoir is open from the start";
   return "";
 }
 

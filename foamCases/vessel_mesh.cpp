@@ -309,6 +309,14 @@ std::array<Point, 2> initial_box(const Scene& scene) {
   }
 }
 
+std::optional<Gate> gate_of(const Scene& scene) {
+  if (scene.kind != Kind::l_box || !scene.l_box().gate_lift_velocity) return std::nullopt;
+  const auto& g = scene.l_box();
+  return Gate{{g.reservoir_length, 0.0, 0.0},
+              {g.reservoir_length, 0.5 * g.width, g.channel_height},
+              *g.gate_lift_velocity};
+}
+
 double whole_over_mesh(const Scene& scene) {
   switch (scene.kind) {
     case Kind::l_box:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,15 @@ BlockLattice vessel_mesh(const scenes::Scene&);
 
 /// The box that the concrete fills at the start: two corners, m. Faces of cells lie on its sides.
 std::array<Point, 2> initial_box(const scenes::Scene&);
+
+/// The plate before an L-box's opening: a rectangle across x, lifted from the floor.
+struct Gate {
+  Point low{}, high{};    ///< m, two corners of it, shut
+  double velocity = 0.0;  ///< m/s
+};
+
+/// The gate of a scene that has one.
+std::optional<Gate> gate_of(const scenes::Scene&);
 
 /// Whole body over what the mesh holds: the missing parts, or a metre of a plane.
 double whole_over_mesh(const scenes::Scene&);

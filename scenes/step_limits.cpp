@@ -156,8 +156,8 @@ double largest_foam_step(const Scene& scene) {
   const Material& material = scene.material;
   double step = std::min(scene.output.history_interval, scene.output.profile_interval);
   if (material.model == Model::elasto_viscoplastic)
-    return std::min(
-        step, waves_over_cells * scene.foam.cell / std::sqrt(material.shear_modulus() / material.density));
+    return std::min(step, waves_over_cells * smallest_foam_cell(scene) /
+                              std::sqrt(material.shear_modulus() / material.density));
   if (material.plastic_viscosity > 0.0)
     step = std::min(step,
                     std::pow(smallest_foam_cell(scene), 2) * material.density / material.plastic_viscosity);

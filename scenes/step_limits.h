@@ -20,7 +20,8 @@ StepLimits step_limits(const Scene&);
 /// The largest step of an OpenFOAM run, before a slump's grows: foam.max_time_step; else, for a fluid, cell^2
 /// density / plastic_viscosity, above which creeping material turns to noise with few pressure correctors,
 /// and for the elasto-viscoplastic law one and a half cells at the speed of its shear waves, which are
-/// implicit: what it bounds is how late they answer. At most the time between two samples. s
+/// implicit: what it bounds is how late they answer. The cells are the smallest there are. At most the time
+/// between two samples. s
 double largest_foam_step(const Scene&);
 /// foam.cell, but between the bars of an L-box, where cells are half a radius wide. m
 double smallest_foam_cell(const Scene&);

@@ -109,6 +109,7 @@ void inclinedCells::remember() {
 }
 
 void inclinedCells::constrain(fvMatrix<vector>& equation, label) {
+  inverse_ = inverse_of_areas(mesh_);  // a gate that is lifted changes areas (liftedGate)
   const auto& density = mesh_.lookupObject<volScalarField>("rho");
   const auto& pressure = mesh_.lookupObject<volScalarField>("p_rgh");
   const auto& gravity = mesh_.time().lookupObject<uniformDimensionedVectorField>("g");
