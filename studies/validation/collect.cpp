@@ -61,6 +61,15 @@ const Seen* partner(const std::vector<Seen>& all, const Seen& of, bool coarse) {
   return nullptr;
 }
 
+/// Why a run that has no such time cannot tell whether it would have had one; empty where it can.
+std::string ended_too_early(const Number& n, const RunView& view) {
+  const auto target = n.published.target();
+  const bool fluid_rests = n.published.quantity == "rest_s" && n.model != scenes::Model::elasto_viscoplastic;
+  if (!target || fluid_rests || compare::reading_named(n.published.quantity).unit != "s") return "";
+  const double end = view.run.history.at("time_s").back();
+  return end < *target ? fmt::format("the run ended after {:.3g} s", end) : "";
+}
+
 std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>& all) {
   std::vector<Number> numbers;
   for (const Published& published : scene.published)
@@ -77,6 +86,10 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
         n.walls_differ = fine.view->walls_differ;
         n.verdict = fine.view->trouble.empty() ? Verdict::never : Verdict::incomplete;
         n.words = fine.view->trouble;
+        if (const std::string early = ended_too_early(n, *fine.view); n.words.empty() && !early.empty()) {
+          n.verdict = Verdict::incomplete;
+          n.words = early;
+        }
       }
       if (coarse && coarse->view) n.coarse = compare::read(coarse->view->run, published.quantity);
       if (n.ours && n.coarse)

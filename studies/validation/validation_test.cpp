@@ -357,6 +357,26 @@ TEST(ExactNumbers, EveryLawIsHeldAgainstItsOwn) {
   EXPECT_TRUE(of("mix-a-slump-sf0").empty());
 }
 
+/// A run that is cut before the published time does not say that it never happens.
+TEST_F(ValidationTest, ARunCutShortIsIncompleteAndNotOneThatNeverRests) {
+  options.scenes = {"mix-b-lbox-sf600"};
+  options.model = scenes::Model::elasto_viscoplastic;
+  for (const double end : {10.0, 20.0}) {
+    const auto wanted = plan(options);
+    for (const Wanted& run : wanted[0].runs) {
+      compare::synthetic::Box box;
+      box.end = end;
+      fs::remove_all(folder.run(run.point.id));
+      compare::synthetic::write(box, folder.run(run.point.id));
+    }
+    const auto found = collect(folder, wanted, options);
+    for (const Number& n : found.scenes[0].numbers)
+      if (n.published.quantity == "rest_s") {
+        EXPECT_EQ(n.words, end < 13.0 ? "incomplete: the run ended after 10 s" : "never happens");
+      }
+  }
+}
+
 TEST_F(ValidationTest, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   options.scenes = {"mix-a-slump-sf0", "no-such-scene"};
   EXPECT_THROW(plan(options), scenes::SceneError);
