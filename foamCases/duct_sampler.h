@@ -15,6 +15,7 @@ class DuctSampler : public Sampler {
   std::string progress() const override;
   double shear_rate() const override { return shear_rate_; }
   std::string fault() const override { return ""; }
+  std::string doubt() const override { return ""; }
   nlohmann::ordered_json summary() const override;
 
  private:

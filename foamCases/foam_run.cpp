@@ -163,13 +163,19 @@ class CaseRun {
       fail(fault.what());
     }
     summarise();
-    return {status_, reason_, monitor_.verdict(), time(), gauges()};
+    return {status_, reason_, verdict(), time(), gauges()};
   }
 
  private:
   double time() const { return sampler_ ? sampler_->time() : 0.0; }
   nlohmann::ordered_json gauges() const {
     return sampler_ ? sampler_->summary() : nlohmann::ordered_json::object();
+  }
+  /// Of the noise, and of what the flow must keep.
+  std::string verdict() const {
+    const std::string noise = monitor_.verdict(), doubt = sampler_ ? sampler_->doubt() : "";
+    if (doubt.empty()) return noise;
+    return noise.starts_with("noisy") ? fmt::format("{}; {}", noise, doubt) : "noisy: " + doubt;
   }
   std::size_t cells() const { return sampler_ ? sampler_->cells() : 0; }
 
@@ -342,12 +348,12 @@ class CaseRun {
       reason_ = fmt::format("interrupted at {:.4g} s; go on with: flowrest foam --resume {}", time(),
                             options_.directory.string());
     write_info(wall);
-    writer_.finish(status_, reason_, monitor_.verdict());
+    writer_.finish(status_, reason_, verdict());
     progress_.finish(
         fmt::format("{} at {:.4g} s, {}, {}; {} steps, {:.3g} steps/s, {:.3g} cell-steps/s, {:.4g} "
                     "simulated s an hour",
                     runs::to_string(status_), time(), sampler_ ? sampler_->progress() : "nothing run",
-                    monitor_.verdict(), steps_, static_cast<double>(steps_) / wall,
+                    verdict(), steps_, static_cast<double>(steps_) / wall,
                     static_cast<double>(steps_ * cells()) / wall, 3600.0 * time() / wall));
   }
 

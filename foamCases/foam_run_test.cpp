@@ -150,6 +150,18 @@ TEST_F(FakeOpenFoam, ConcreteFasterThanItsWeightCanMakeItEndsTheRun) {
   EXPECT_THAT(testing::text_of(options_.directory / "case" / "log.interFoam"), HasSubstr("Time = 0.5"));
 }
 
+TEST_F(FakeOpenFoam, ConcreteThatIsLostMakesTheVerdictNoisy) {
+  program("interFoam", step(0.5, 0.5) +
+                           "mkdir 0.5; cp 0/U 0.5/;"
+                           " awk '$1 == \"1\" { print 0.999; next } { print }' 0/alpha.concrete"
+                           " > 0.5/alpha.concrete\n" +
+                           step(1.0, 0.5) + "echo End");
+  const std::string verdict =
+      "noisy: the volume of concrete is off by 0.1 % since 0.5 s, where 0.02 % are allowed";
+  EXPECT_EQ(run_scene(scene_, options_).verdict, verdict);
+  EXPECT_EQ(runs::read_run(options_.directory).info["verdict"], verdict);
+}
+
 TEST_F(FakeOpenFoam, AnotherCaseIsLeftAlone) {
   program("interFoam", "exit 1");
   fs::create_directories(options_.directory / "system");

@@ -42,6 +42,8 @@ class Sampler {
   virtual double shear_rate() const = 0;
   /// Why the run can give no answer any more; empty where it can.
   virtual std::string fault() const = 0;
+  /// Why the answer is in doubt for what was sampled; empty where it is not.
+  virtual std::string doubt() const = 0;
   /// The last gauges, for run.json.
   virtual nlohmann::ordered_json summary() const = 0;
 

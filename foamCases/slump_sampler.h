@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "foamCases/conservation.h"
 #include "foamCases/sampler.h"
 #include "foamCases/slump_mesh.h"
 
@@ -14,11 +15,7 @@ struct SlumpState {
   double spread = 0.0;            ///< m, at 3 mm depth
   double front = 0.0;             ///< m
   double height = 0.0;            ///< m, centre depth
-  double volume = 0.0;            ///< m3
   double rim_depth = 0.0;         ///< m
-  double volume_error = 0.0;      ///< largest so far, relative to the first sample
-  double first_volume = 0.0;      ///< m3
-  double kinetic_energy = 0.0;    ///< J
   double shear_rate = 0.0;        ///< 1/s, 99th percentile inside
   double base_shear_rate = 0.0;   ///< 1/s, 99th percentile at the base
   double trapped_air = 0.0;       ///< m3
@@ -35,15 +32,16 @@ class SlumpSampler : public Sampler {
   std::string progress() const override;
   double shear_rate() const override { return std::max(state_.shear_rate, state_.base_shear_rate); }
   std::string fault() const override;
+  std::string doubt() const override { return conservation_.doubt(); }
   void continue_from(const runs::Table& history) override;
   nlohmann::ordered_json summary() const override;
 
  private:
-  double energy_bound() const;
   void sample(double time, const ReadField&) override;
   void write_history(double time, const SlumpGauges&);
 
   std::unique_ptr<SlumpMesh> mesh_;
+  Conservation conservation_;
   SlumpState state_;
 };
 

@@ -3,23 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "foamCases/vessel_mesh.h"
 
 namespace flowrest::foam {
 
-namespace {
-
-constexpr double volume_bound = 0.1;  // relative; a bounded phase fraction keeps the volume to 1e-6
-
-}  // namespace
-
 VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
                              bool plug_in)
-    : Sampler(scene, std::move(fields), writer, plug_in), gauge_(scene) {
+    : Sampler(scene, std::move(fields), writer, plug_in),
+      gauge_(scene),
+      conservation_(scene, initial_volume(scene)) {
   std::vector<std::string> columns{"time_s"};
   const auto add = [&](std::initializer_list<std::string> more) { columns.insert(columns.end(), more); };
   if (is_funnel()) {
@@ -41,16 +35,12 @@ void VesselSampler::sample(double time, const ReadField& read) {
   if (plug_in() && time > 0.0) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) flocculation_ = gauge_.mean_over_concrete(fields.fraction, flocculation(time, read));
   now_ = gauge_.measure(fields);
-  time_ = time;
-  if (time == 0.0) first_volume_ = now_.volume;
-  largest_volume_error_ = std::max(largest_volume_error_, std::abs(volume_error()));
+  conservation_.add(time, now_.volume, now_.kinetic_energy);
   if (history_is_due(time)) write_history(time);
   if (profile_is_due(time)) writer().profile(time, now_.place, now_.depth);
 }
 
-double VesselSampler::discharged() const { return 1.0 - now_.over_outlet / first_volume_; }
-
-double VesselSampler::volume_error() const { return is_funnel() ? 0.0 : now_.volume / first_volume_ - 1.0; }
+double VesselSampler::discharged() const { return 1.0 - now_.over_outlet / conservation_.first_volume(); }
 
 double VesselSampler::shear_rate() const { return std::max(now_.shear_rate_p99, now_.base_shear_rate_p99); }
 
@@ -66,7 +56,7 @@ void VesselSampler::write_history(double time) {
   if (plug_in()) add({now_.shear_rate_p99});
   add({now_.base_shear_rate_p99});
   add_steps(time, row);
-  add({volume_error()});
+  add({conservation_.error()});
   if (thixotropic()) add({flocculation_});
   writer().history(row);
 }
@@ -76,30 +66,13 @@ std::string VesselSampler::progress() const {
                      : fmt::format("front {:.1f} mm", 1e3 * now_.front);
 }
 
-std::string VesselSampler::fault() const {
-  if (!(largest_volume_error_ < volume_bound) || (is_funnel() && !(discharged() > -volume_bound)))
-    return fmt::format("the volume of concrete is off by {:.0f} % at {:.4g} s: the flow diverges",
-                       100.0 * std::max(largest_volume_error_, -discharged()), time_);
-  const double gravity = scene().forces.gravity;
-  const double bound = scene().material.density * gravity * initial_volume(scene()) * scene().body_height();
-  if (gravity > 0.0 && !(now_.kinetic_energy < bound))
-    return fmt::format(
-        "the concrete moves with {:.3g} J at {:.4g} s, and all its weight can give is {:.3g} J: the flow "
-        "diverges",
-        now_.kinetic_energy, time_, bound);
-  return "";
-}
-
 void VesselSampler::continue_from(const runs::Table& history) {
   Sampler::continue_from(history);
   if (history.rows() == 0) return;
-  first_volume_ = history.at("volume_m3").front();
-  for (const double error : history.at("volume_error"))
-    largest_volume_error_ = std::max(largest_volume_error_, std::abs(error));
-  time_ = time();
-  now_.volume = history.at("volume_m3").back();
+  conservation_.continue_from(history);
+  now_.volume = conservation_.volume();
   if (is_funnel()) {
-    now_.over_outlet = first_volume_ * (1.0 - history.at("discharged_fraction").back());
+    now_.over_outlet = conservation_.first_volume() * (1.0 - history.at("discharged_fraction").back());
     now_.thinnest_over_outlet = 1e-3 * history.at("thinnest_sight_mm").back();
   } else {
     now_.front = 1e-3 * history.at("front_mm").back();
@@ -116,9 +89,9 @@ nlohmann::ordered_json VesselSampler::summary() const {
     gauges = {{"front_mm", 1e3 * now_.front},
               {"end_height_mm", 1e3 * now_.end_height},
               {"start_height_mm", 1e3 * now_.start_height},
-              {"volume_error", largest_volume_error_}};
+              {"volume_error", conservation_.largest_error()}};
   }
-  gauges["initial_volume_error"] = first_volume_ / initial_volume(scene()) - 1.0;
+  gauges["initial_volume_error"] = conservation_.initial_error();
   return gauges;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "foamCases/conservation.h"
 #include "foamCases/sampler.h"
 #include "foamCases/vessel_gauge.h"
 
@@ -14,7 +15,8 @@ class VesselSampler : public Sampler {
   std::size_t cells() const override { return gauge_.cells(); }
   std::string progress() const override;
   double shear_rate() const override;
-  std::string fault() const override;
+  std::string fault() const override { return conservation_.fault(); }
+  std::string doubt() const override { return conservation_.doubt(); }
   void continue_from(const runs::Table& history) override;
   nlohmann::ordered_json summary() const override;
 
@@ -23,11 +25,11 @@ class VesselSampler : public Sampler {
   void sample(double time, const ReadField&) override;
   void write_history(double time);
   double discharged() const;  ///< share of the concrete
-  /// By how much the volume has changed since the start where nothing may leave; of a funnel 0.
-  double volume_error() const;
+
   VesselGauge gauge_;
   VesselGauges now_;
-  double time_ = 0.0, first_volume_ = 0.0, largest_volume_error_ = 0.0, flocculation_ = 0.0;
+  Conservation conservation_;
+  double flocculation_ = 0.0;
 };
 
 }  // namespace flowrest::foam
