@@ -102,6 +102,23 @@ TEST(VesselMesh, BarsAreRound) {
             8 + 14);  // half a bar on the plane of symmetry; the two corners on the face are not moved
 }
 
+/// Through one cell across the air behind the bars raced, and fresh Mix B's volume was lost.
+TEST(VesselMesh, AGapBetweenBarsIsMoreThanOneCellWide) {
+  for (const char* cell : {"0.02", "0.026667", "0.033", "0.1"}) {
+    const auto scene = scene_of("mix-b-lbox-sf0", {std::string("foam.cell=") + cell});
+    const auto lattice = vessel_mesh(scene);
+    int gaps = 0;
+    for (std::size_t j = 0; j < lattice.cells[1].size(); ++j) {
+      const int side = static_cast<int>(j);
+      const double width = lattice.corner(0, side + 1, 0)[1] - lattice.corner(0, side, 0)[1];
+      if (width < scene.l_box().rebar_diameter) continue;  // a cell of a bar
+      ++gaps;
+      EXPECT_GE(lattice.cells[1][j], 2) << cell << " at " << lattice.corner(0, side, 0)[1];
+    }
+    EXPECT_EQ(gaps, 2) << cell;  // of the half: one to the bar beside the middle, one to the side
+  }
+}
+
 TEST(VesselMesh, SaysWhatIsAllowed) {
   const auto refusal = [](const std::string& name, const std::vector<std::string>& set) -> std::string {
     try {
