@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ void add_exact(CLI::App& app) {
     std::string scene, output;
     scenes::Overrides overrides;
     bool thin_film = false;
+    std::optional<double> flocculation;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -32,12 +34,16 @@ void add_exact(CLI::App& app) {
   command->add_flag("--thin-film", arguments->thin_film,
                     "Add a slump's approach to rest in time, as a thin film of Bingham material, "
                     "with and without the pull of its plug");
+  command->add_option(
+      "--flocculation", arguments->flocculation,
+      "Structure with which a thixotropic material comes to rest: the last flocculation_mean of a "
+      "run; 0: broken down");
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
     const auto scene = scenes::load_scene(arguments->scene, arguments->overrides);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
-    auto written = exact::write_exact_runs(scene, output);
+    auto written = exact::write_exact_runs(scene, output, arguments->flocculation);
     if (arguments->thin_film) {
       written.push_back(exact::write_film_run(scene, std::filesystem::path(output) / "thin-film"));
       written.push_back(

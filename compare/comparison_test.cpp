@@ -447,6 +447,38 @@ TEST_F(ComparisonTest, ExactRunsRefuseScenesWithoutASolution) {
   EXPECT_FALSE(fs::exists(folder / "exact")) << "something was written all the same";
 }
 
+TEST_F(ComparisonTest, AnLBoxHasAnArrestedShapeForTheStructureItEndsWith) {
+  const auto box = [](std::vector<std::string> set = {}) {
+    return scenes::load_scene("mix-b-lbox-sf600", {std::move(set), std::nullopt});
+  };
+  const auto refusal = [&](const scenes::Scene& scene, std::optional<double> flocculation) {
+    return message_of([&] { exact::write_exact_runs(scene, folder / "refused", flocculation); });
+  };
+  EXPECT_THAT(refusal(box(), std::nullopt), HasSubstr("--flocculation gives what it is"));
+  EXPECT_THAT(refusal(box(), -1.0), HasSubstr("allowed: from 0"));
+  EXPECT_THAT(refusal(box(), 4.4), HasSubstr("it would fill the opening (150 mm)"));
+  EXPECT_THAT(refusal(box({"walls.base=slip"}), 0.5), HasSubstr("hold nothing"));
+  EXPECT_THAT(refusal(scenes::load_scene("roussel-slump"), 0.5), HasSubstr("not thixotropic"));
+  EXPECT_FALSE(fs::exists(folder / "refused"));
+
+  const auto written = exact::write_exact_runs(box(), folder / "exact", 0.5);
+  ASSERT_EQ(written.size(), 1U);
+  const auto run = runs::read_run(written.front().directory);
+  const double front = run.history.at("front_mm").back();
+  EXPECT_GT(front, 500.0);
+  EXPECT_LT(front, 600.0);
+  EXPECT_EQ(run.history.at("end_height_mm").back(), 0.0);
+  ASSERT_EQ(run.profiles.size(), 1U);
+  EXPECT_NEAR(run.profiles[0].value.front(), 1e-3 * run.history.at("start_height_mm").back(), 1e-12);
+
+  synthetic::write(synthetic::Box{}, folder / "mpm");
+  const Comparison comparison = compared();
+  EXPECT_THAT(text(comparison), HasSubstr("mm (exact, arrested, flocculation 0.5)"));
+  // Broken down, it reaches the end.
+  exact::write_exact_runs(box(), folder / "exact", 0.0);
+  EXPECT_THAT(text(compared()), HasSubstr("600 mm, 35 mm high at the end (exact, arrested, flocculation 0)"));
+}
+
 TEST(Words, CarryNoMoreDigitsThanTheyShould) {
   EXPECT_EQ(words::spread(0.5756), "576 mm");
   EXPECT_EQ(words::time(19.42), "19 s");

@@ -440,9 +440,15 @@ void describe_growth(Comparison& comparison) {
   std::vector<std::string> exact;
   for (const RunView& view : comparison.runs) {
     if (view.gauge.empty()) continue;
-    if (view.exact)
-      exact.push_back(fmt::format("{} ({})", words::spread(*view.measures.gauge_end), view.label));
-    if (view.exact) continue;
+    if (view.exact) {
+      const Series height = column(view.run, "end_height_mm");
+      exact.push_back(fmt::format("{}{} ({})", words::spread(*view.measures.gauge_end),
+                                  !height.empty() && height.value.back() > 0.0
+                                      ? fmt::format(", {:.0f} mm high at the end", height.value.back())
+                                      : "",
+                                  view.label));
+      continue;
+    }
     if (comparison.kind != scenes::Kind::slump)
       tell(comparison, Topic::stop, readings_sentence(comparison, view));
     if (!view.fluid) tell(comparison, Topic::stop, arrest_sentence(comparison, view));

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "compare/exact/channel.h"
 #include "compare/exact/film.h"
 #include "compare/exact/solutions.h"
 #include "runs/depth.h"
@@ -20,12 +22,23 @@ using scenes::Scene;
 
 constexpr double spread_threshold = 0.003;  // m, as every run's spread
 
-Bingham material_of(const Scene& scene) {
-  return {scene.material.density, scene.material.yield_stress, scene.material.plastic_viscosity};
-}
-
 [[noreturn]] void refuse(const Scene& scene, const std::string& why) {
   throw RunError(fmt::format("{}: this scene has no exact solution here: {}", scene.path.string(), why));
+}
+
+/// The scene's material with the yield stress that its structure gives it (Yu et al. 2026, Eq. 11).
+Bingham material_of(const Scene& scene, std::optional<double> flocculation = std::nullopt) {
+  if (scene.thixotropy && !flocculation)
+    refuse(
+        scene,
+        "a thixotropic yield stress changes with the flow's history; --flocculation gives what it is in the "
+        "end, such as the last flocculation_mean of a run");
+  if (flocculation && !scene.thixotropy)
+    refuse(scene, "--flocculation is given, and its material is not thixotropic");
+  if (flocculation && !(*flocculation >= 0.0 && std::isfinite(*flocculation)))
+    refuse(scene, fmt::format("--flocculation {:g}; allowed: from 0", *flocculation));
+  return {scene.material.density, scene.material.yield_stress * (1.0 + flocculation.value_or(0.0)),
+          scene.material.plastic_viscosity};
 }
 
 /// Points from the middle to the edge, closer towards the edge where the depth falls steeply, and one just
@@ -61,10 +74,10 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
                       1000.0 * spread, 2000.0 * edge, 1000.0 * profile.depth(0.0))};
 }
 
-std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::path& directory) {
-  const Bingham material = material_of(scene);
+std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::path& directory,
+                                   std::optional<double> flocculation) {
+  const Bingham material = material_of(scene, flocculation);
   const auto& cone = scene.slump();
-  if (scene.thixotropy) refuse(scene, "a thixotropic yield stress changes with the flow's history");
   if (scene.base.law != scenes::Wall::no_slip)
     refuse(scene, "the arrested profiles hold on a base without slip");
   if (!(material.yield_stress > 0.0)) refuse(scene, "without a yield stress the material spreads for ever");
@@ -105,10 +118,10 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
                   "h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)), a = 1.36 tau0/(rho g)")};
 }
 
-std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path& directory) {
-  const Bingham material = material_of(scene);
+std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path& directory,
+                                 std::optional<double> flocculation) {
+  const Bingham material = material_of(scene, flocculation);
   const double height = scene.duct().height;
-  if (scene.thixotropy) refuse(scene, "a thixotropic yield stress changes with the flow's history");
   if (scene.base.law != scenes::Wall::no_slip)
     refuse(scene, "the steady profile holds between plates without slip");
   if (!(material.plastic_viscosity > 0.0))
@@ -148,6 +161,45 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
   }
   writer.finish(runs::Status::end_time, "the steady state of each stage, at its end", "sound");
   return {{directory / "steady", summary}};
+}
+
+std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::path& directory,
+                                    std::optional<double> flocculation) {
+  const Bingham material = material_of(scene, flocculation);
+  const auto& box = scene.l_box();
+  if (scene.base.law == scenes::Wall::slip)
+    refuse(scene, "walls without friction hold nothing: the concrete levels out");
+  if (!(material.yield_stress > 0.0)) refuse(scene, "without a yield stress the material levels out");
+  if (!(scene.forces.gravity > 0.0)) refuse(scene, "without gravity nothing leaves the reservoir");
+  const double friction = scene.base.law == scenes::Wall::friction ? scene.base.friction
+                                                                   : std::numeric_limits<double>::infinity();
+  const double volume = box.reservoir_length * box.width * box.reservoir_height;
+  const ArrestedChannel shape(material, scene.forces.gravity, {box.width, box.length(), friction}, volume);
+  if (shape.depth(box.reservoir_length) > box.channel_height)
+    refuse(scene,
+           fmt::format("it would fill the opening ({:.0f} mm), whose upper wall the solution does not have: "
+                       "it stands at {:.0f} mm there",
+                       1e3 * box.channel_height, 1e3 * shape.depth(box.reservoir_length)));
+  const double front = 1e3 * (shape.reach(spread_threshold) - box.reservoir_length);
+  const double end = 1e3 * shape.end_height(), start = 1e3 * shape.start_height();
+  const std::string label =
+      flocculation ? fmt::format("exact, arrested, flocculation {:g}", *flocculation) : "exact, arrested";
+  runs::RunWriter writer(directory / "arrested", scene, "exact");
+  writer.info()["model"] = "bingham";
+  writer.info()["label"] = label;
+  writer.info()["source"] =
+      "yield stress on floor and side walls against the weight (Nguyen, Roussel and Coussot 2006), no bars";
+  if (flocculation) writer.info()["flocculation"] = *flocculation;
+  writer.history_columns({"time_s", "front_mm", "end_height_mm", "start_height_mm", "volume_m3"});
+  writer.history(std::vector{scene.time.end, front, end, start, volume});
+  std::vector<double> coordinate = points_to(shape.front()), depth;
+  for (const double x : coordinate) depth.push_back(shape.depth(x));
+  writer.profile(scene.time.end, coordinate, depth);
+  writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
+  return {{directory / "arrested",
+           end > 0.0 ? fmt::format("{}: reaches the end, {:.1f} mm high there, {:.1f} mm at the start", label,
+                                   end, start)
+                     : fmt::format("{}: front {:.1f} mm, {:.1f} mm high at the start", label, front, start)}};
 }
 
 }  // namespace
@@ -190,15 +242,18 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
                                  1000.0 * spread, scene.time.end, 1000.0 * height)};
 }
 
-std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory) {
+std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory,
+                                       std::optional<double> flocculation) {
   if (std::filesystem::exists(directory / "run.json"))
     throw RunError(fmt::format("{}: is itself a run; name the folder that shall hold the exact runs",
                                directory.string()));
   switch (scene.kind) {
     case scenes::Kind::slump:
-      return write_slumps(scene, directory);
+      return write_slumps(scene, directory, flocculation);
     case scenes::Kind::duct:
-      return write_duct(scene, directory);
+      return write_duct(scene, directory, flocculation);
+    case scenes::Kind::l_box:
+      return write_channel(scene, directory, flocculation);
     default:
       break;
   }

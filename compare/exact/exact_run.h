@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,12 @@ struct ExactRun {
 
 /// Writes every exact or asymptotic solution the scene has into a run directory of its own below `directory`:
 /// a slump leaves `leading-order` and `second-order` (a plane one only the first), a duct
-/// `steady`. Nothing is written of a scene that has none.
+/// `steady`, an L-box `arrested`. Nothing is written of a scene that has none. `flocculation`: that with
+/// which a thixotropic material comes to rest or flows steadily, which hangs on its history and must be
+/// given.
 /// @throws runs::RunError where the scene has no such solution, saying why.
-std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory);
+std::vector<ExactRun> write_exact_runs(const scenes::Scene&, const std::filesystem::path& directory,
+                                       std::optional<double> flocculation = std::nullopt);
 
 /// The slump as a thin film of the scene's Bingham material, in time: what its own law lets it do, without
 /// inertia and without a grid over its depth. `plug_pulls`: with the extensional stress of the plug, so that

@@ -79,6 +79,8 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       n.published = published;
       n.solver = fine.wanted->solver;
       n.model = fine.wanted->model;
+      if (published.quantity == "front_mm" && scene.scene.kind == scenes::Kind::l_box)
+        n.wall = 1e3 * scene.scene.l_box().channel_length;
       const Seen* coarse = partner(all, fine, true);
       if (fine.view) {
         n.ours = compare::read(fine.view->run, published.quantity);
@@ -409,6 +411,13 @@ void judge(Number& n) {
   if (!difference) {
     n.verdict = Verdict::not_comparable;
     n.words = "nothing to compare with";
+    return;
+  }
+  constexpr double at_the_wall = 0.5;  // mm
+  if (n.wall && *n.ours > *n.wall - at_the_wall && *n.published.target() < *n.wall - at_the_wall) {
+    n.verdict = Verdict::misses;
+    n.within = false;
+    n.words = fmt::format("misses: it reaches the wall at {}, before which it should stop", amount(*n.wall));
     return;
   }
   const double miss = std::abs(*difference), allowed = n.published.allowed;

@@ -66,6 +66,8 @@ struct Number {
   std::optional<double> ours = {};         ///< at the scene's resolution
   std::optional<double> coarse = {};       ///< at the second one
   std::optional<double> uncertainty = {};  ///< of ours, by the two: taken on to zero cell size at first order
+  /// Where a wall ends what is measured, such as an L-box's front; what gets there would have gone on.
+  std::optional<double> wall = {};
   Verdict verdict = Verdict::not_run;
   std::optional<bool> within =
       {};                  ///< whether ours itself lies within what is allowed, however well it is known
@@ -116,7 +118,7 @@ struct Found {
   std::optional<double> arrival = {};         ///< s, at the end wall
   std::optional<double> creep = {};  ///< mm/s over the last fifth: of the gauge, or of the height at the end
                                      ///< wall once the front has arrived there
-  double cpu = 0.0;  ///< s
+  double cpu = 0.0;                  ///< s
 };
 
 /// What the papers say of flow and rest beyond their numbers, and whether a run bears it out.

@@ -88,6 +88,25 @@ TEST(Judgement, IsPlain) {
   EXPECT_EQ(fluid.words, "a fluid never rests");
 }
 
+/// 20 mm short of a wall may be within what is allowed; to stop there, and to be stopped by the wall, is not
+/// the same.
+TEST(Judgement, WhatAWallStoppedDidNotStopShortOfIt) {
+  Number front;
+  front.published = {"scene", "front_mm", 580.0, std::nullopt, 30.0, Mark::independent, "Table"};
+  front.ours = front.coarse = 600.0;
+  front.uncertainty = 0.0;
+  judge(front);
+  EXPECT_EQ(front.words, "agrees") << "where no wall is known";
+  front.wall = 600.0;
+  judge(front);
+  EXPECT_EQ(front.verdict, Verdict::misses);
+  EXPECT_EQ(front.within, false);
+  EXPECT_EQ(front.words, "misses: it reaches the wall at 600 mm, before which it should stop");
+  front.ours = 590.0;
+  judge(front);
+  EXPECT_EQ(front.words, "agrees");
+}
+
 TEST(Published, EveryRowIsOfASceneThatThereIs) {
   const auto published = read_published();
   EXPECT_GE(published.size(), 28u);
