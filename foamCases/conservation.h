@@ -23,7 +23,6 @@ class Conservation {
   void continue_from(const runs::Table& history);
 
   double first_volume() const { return first_volume_; }  ///< m3
-  double volume() const { return volume_; }              ///< m3, the last
   /// By how much the first volume differs from that of the scene, relative.
   double initial_error() const { return first_volume_ / scene_volume_ - 1.0; }
   /// By how much the volume has changed since the start, relative; 0 where concrete may leave.

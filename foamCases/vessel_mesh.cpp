@@ -97,8 +97,8 @@ class LBox {
     }
     x_ = line_through(x, cell);
     y_ = line_through(y, cell);
-    for (std::size_t j = 0; j < y_.cells.size(); ++j)
-      if (!bars_.empty() && y_.at[j + 1] - y_.at[j] > 2.0 * bars_.front().radius)
+    for (std::size_t j = 0; g_.rebars > 0 && j < y_.cells.size(); ++j)
+      if (y_.at[j + 1] - y_.at[j] > g_.rebar_diameter)
         y_.cells[j] = std::max(y_.cells[j], fewest_between_bars);
     const double top = g_.reservoir_height, air = g_.channel_height + air_rows * cell;
     if (air > top - same)

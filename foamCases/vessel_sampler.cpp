@@ -70,7 +70,6 @@ void VesselSampler::continue_from(const runs::Table& history) {
   Sampler::continue_from(history);
   if (history.rows() == 0) return;
   conservation_.continue_from(history);
-  now_.volume = conservation_.volume();
   if (is_funnel()) {
     now_.over_outlet = conservation_.first_volume() * (1.0 - history.at("discharged_fraction").back());
     now_.thinnest_over_outlet = 1e-3 * history.at("thinnest_sight_mm").back();

@@ -8,7 +8,7 @@ namespace flowrest::compare::exact {
 
 namespace {
 
-/// Gauss-Legendre, five points, on pieces that are halved towards the front, where depth falls steeply.
+/// Gauss-Legendre, five points, on pieces of one length.
 template <class Function>
 double integral(const Function& f, double low, double high) {
   constexpr std::array<double, 3> at{0.0, 0.5384693101056831, 0.9061798459386640};
@@ -41,7 +41,6 @@ ArrestedChannel::ArrestedChannel(const Bingham& material, double gravity, const 
                                  double volume)
     : weight_(material.density * gravity), yield_stress_(material.yield_stress), channel_(channel) {
   const double area = volume / channel.width;
-  // What stands against the closed end never stands higher than with the walls' whole hold on all of it.
   double most = std::sqrt(area);
   while (area_between(0.0, most) < area) most *= 2.0;
   start_height_ = inverse([&](double high) { return area_between(0.0, high); }, area, 0.0, most);
@@ -68,16 +67,19 @@ double ArrestedChannel::run_of(double height) const {
   return weight_ * height / (floor + 2.0 * side / channel_.width);
 }
 
-double ArrestedChannel::length_between(double low, double high) const {
-  const auto f = [this](double h) { return run_of(h); };
+template <class Function>
+double ArrestedChannel::over_heights(const Function& f, double low, double high) const {
+  // Below this height no wall gives the yield stress.
   const double kink = std::clamp(yield_stress_ / (channel_.friction * weight_), low, high);
   return integral(f, low, kink) + integral(f, kink, high);
 }
 
+double ArrestedChannel::length_between(double low, double high) const {
+  return over_heights([this](double h) { return run_of(h); }, low, high);
+}
+
 double ArrestedChannel::area_between(double low, double high) const {
-  const auto f = [this](double h) { return h * run_of(h); };
-  const double kink = std::clamp(yield_stress_ / (channel_.friction * weight_), low, high);
-  return integral(f, low, kink) + integral(f, kink, high);
+  return over_heights([this](double h) { return h * run_of(h); }, low, high);
 }
 
 double ArrestedChannel::depth(double x) const {

@@ -36,6 +36,8 @@ class ArrestedChannel {
   /// Length over which the depth falls from one height to another, and the area below, m and m2.
   double length_between(double low, double high) const;
   double area_between(double low, double high) const;
+  template <class Function>
+  double over_heights(const Function&, double low, double high) const;
 
   double weight_ = 0.0;  ///< rho g, N/m3
   double yield_stress_ = 0.0;
