@@ -255,10 +255,10 @@ std::vector<Key> mpm_keys() {
              "time over which the transfer of quadratic-apic smooths velocities once, whatever the step")
           .otherwise(
               "that of a step of CFL 0.75, which is plain APIC; beside walls that do not lie along the "
-              "grid or have friction 0.02"),
+              "grid 0.02"),
       number(
           "mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
-          "share of the volume by which particles overlap, or leave a gap at a no-slip floor, that is taken "
+          "share of the volume by which particles overlap, or leave a gap at a floor that holds, that is taken "
           "back per unit of shear strain; 0 lets material that is sheared for long sink into itself and "
           "fronts roll over gaps")
           .otherwise("1; linear-flip 0.3; ducts and funnels 0; always 0 with paper"),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mpm/boundary/wall_transfer.h"
 #include "mpm/transfer/tile.h"
 
 /// Plane walls along the grid, and planes of symmetry, which are slip walls.
@@ -22,7 +23,9 @@ FLOWREST_INLINE void across_layers(int a, int from, int to, Use use) {
 FLOWREST_INLINE bool odd_across(PlaneWall wall, int a, int c) { return wall == PlaneWall::no_slip || c == a; }
 
 /// Folds what fell on the ghost nodes behind plane walls onto their mirror images: mass is added, momentum
-/// with the sign of the mirrored body's. Only the quadratic functions reach behind a wall.
+/// with the sign of the mirrored body's. Only the quadratic functions reach behind a wall. Behind a wall of
+/// friction only the filling is folded: how far the body is mirrored hangs on what the wall holds, which is
+/// known once the nodes are summed (plane_friction.h).
 template <class T, int Dim>
 void fold_ghosts(T* arena, const BlockView& block, const AxisBounds* bounds) {
   for (int a = 0; a < Dim; ++a)
@@ -33,6 +36,11 @@ void fold_ghosts(T* arena, const BlockView& block, const AxisBounds* bounds) {
       across_layers<Dim>(a, side == 0 ? cell : cell + 2, cell + 1, [&](int ghost, int image) {
         T* from = arena + ghost * node_values;
         T* to = arena + image * node_values;
+        if (wall == PlaneWall::friction) {
+          to[record] += from[record];
+          from[record] = T(0);
+          return;
+        }
         for (int r = 0; r < node_values / record; ++r) {
           to[r * record] += from[r * record];
           for (int c = 0; c < Dim; ++c) {
@@ -45,19 +53,9 @@ void fold_ghosts(T* arena, const BlockView& block, const AxisBounds* bounds) {
     }
 }
 
-/// What takes the error of a transfer to particles and back out of the first row of nodes along a no-slip
-/// wall, as a share of the second difference v2 - 3 v1 of the first two rows' velocities (the wall's own is
-/// zero).
-///
-/// APIC's transfer leaves a quadratic profile as it is, but not across the wall: the mirrored body of
-/// v = a y + b y^2 is a y - b y^2. Folding it moves the first node by B b h^2, per transfer and in a filled
-/// cell; the integral over the particles' places y gives B = 2/21. With the spline's own coefficients
-/// b h^2 = (v2 - 3 v1) / 2, which solved for v1 makes the correction B / 2 / (1 - 3 B / 2) = 1/18. Untreated,
-/// the error is a drag on the body that grows as 1 / step, and most of what is wrong with a duct's profile.
-constexpr double wall_transfer_correction = 1.0 / 18.0;
-
-/// Takes the transfer's error out of the first row of nodes along every no-slip wall. Where the second row
-/// holds little the profile is unknown and the first row is left alone. Before ghost nodes copy these.
+/// Takes the transfer's error (wall_transfer.h) out of the first row of nodes along every no-slip wall. Where
+/// the second row holds little the profile is unknown and the first row is left alone. Before ghost nodes
+/// copy these.
 template <class T, int Dim>
 void correct_wall_transfer(T* arena, const BlockView& block, const AxisBounds* bounds) {
   for (int a = 0; a < Dim; ++a)
@@ -76,8 +74,8 @@ void correct_wall_transfer(T* arena, const BlockView& block, const AxisBounds* b
 }
 
 /// Sets the velocities that plane walls prescribe. Quadratic: the ghost node mirrors the first one inside.
-/// Linear: the node on the wall itself is held. Filling is even across every wall: a linear node on a wall
-/// sees half of its volume.
+/// Linear: the node on the wall itself is held. Walls of friction have held their nodes already. Filling is
+/// even across every wall: a linear node on a wall sees half of its volume.
 template <class T, int Dim, class Shape>
 void set_wall_velocities(T* arena, const BlockView& block, const AxisBounds* bounds) {
   constexpr bool mirrored = Shape::nodes == 3;
@@ -93,6 +91,7 @@ void set_wall_velocities(T* arena, const BlockView& block, const AxisBounds* bou
       across_layers<Dim>(a, held, mirrored ? cell + 1 : held, [&](int node, int image) {
         T* filling = arena + node * node_values + record;
         *filling = mirrored ? arena[image * node_values + record] : T(2) * *filling;
+        if (wall == PlaneWall::friction) return;
         for (int r = 0; r < node_values / record; ++r)
           for (int c = 0; c < Dim; ++c) {
             T& value = arena[node * node_values + r * record + 1 + c];

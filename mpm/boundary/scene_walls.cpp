@@ -19,6 +19,18 @@ Contact contact_of(const scenes::WallContact& c) {
   return c.law == scenes::Wall::slip ? Contact::slip : Contact::stick;
 }
 
+PlaneWall plane_wall_of(scenes::Wall law) {
+  switch (law) {
+    case scenes::Wall::no_slip:
+      return PlaneWall::no_slip;
+    case scenes::Wall::slip:
+      return PlaneWall::slip;
+    case scenes::Wall::friction:
+      return PlaneWall::friction;
+  }
+  return PlaneWall::none;
+}
+
 class Builder {
  public:
   Builder(const scenes::Scene& scene, double cell)
@@ -61,16 +73,16 @@ class Builder {
     return w;
   }
 
-  /// Everything beyond `place` along an axis, seen from below or above. A plane along the grid that is not
-  /// rough is held by the grid itself.
+  /// Everything beyond `place` along an axis, seen from below or above. A plane along the grid is held by the
+  /// grid itself.
   void plane(const std::string& name, std::size_t axis, bool upper, double place, const Extent& extent) {
     const double cells = place / cell_;
     const bool on_grid = std::abs(cells - std::round(cells)) < 1e-6;
-    if (on_grid && scene_.base.law != scenes::Wall::friction) {
-      const PlaneWall held = scene_.base.law == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip;
-      (upper ? made_.bounds[axis].upper : made_.bounds[axis].lower) = held;
-      (upper ? made_.bounds[axis].upper_cell : made_.bounds[axis].lower_cell) =
-          static_cast<int>(std::lround(cells));
+    if (on_grid) {
+      AxisBounds& bounds = made_.bounds[axis];
+      (upper ? bounds.upper : bounds.lower) = plane_wall_of(scene_.base.law);
+      (upper ? bounds.upper_cell : bounds.lower_cell) = static_cast<int>(std::lround(cells));
+      (upper ? bounds.upper_friction : bounds.lower_friction) = scene_.base.friction;
       return;
     }
     Vector at{}, normal{};
@@ -120,7 +132,7 @@ class Builder {
   }
 
   void duct() {
-    const PlaneWall held = scene_.base.law == scenes::Wall::slip ? PlaneWall::slip : PlaneWall::no_slip;
+    const PlaneWall held = plane_wall_of(scene_.base.law);
     const int layers = static_cast<int>(std::lround(scene_.duct().height / cell_));
     made_.bounds[0] = {PlaneWall::none, PlaneWall::none, 0, block_edge, true};
     made_.bounds[1] = {held, held, 0, layers, false};

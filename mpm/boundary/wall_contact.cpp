@@ -66,7 +66,8 @@ bool WallContact<T>::add_entry(const SparseBlocks& blocks, const int (&node)[3],
     const AxisBounds& bounds = grid_.bounds[static_cast<std::size_t>(a)];
     for (const bool upper : {false, true}) {
       const PlaneWall wall = upper ? bounds.upper : bounds.lower;
-      if (wall == PlaneWall::none) continue;
+      // Nodes behind a wall of friction are the body's own.
+      if (wall == PlaneWall::none || wall == PlaneWall::friction) continue;
       const int face = upper ? bounds.upper_cell : bounds.lower_cell;
       const bool behind = grid_.quadratic ? (upper ? n[a] > face : n[a] <= face) : n[a] == face;
       if (!behind) continue;

@@ -27,12 +27,13 @@ enum class Average { volume, pressure, dilatation };
 constexpr int average_count = 3;
 
 /// The grid's memory. Arenas belong to the occupied blocks, nodes and averages to all that exist; averages
-/// are null where nothing is averaged through the nodes.
+/// are null where nothing is averaged through the nodes, holds where no plane wall has friction.
 template <class T>
 struct Grid {
   T* arenas = nullptr;
   T* nodes = nullptr;
   T* averages = nullptr;
+  T* holds = nullptr;  ///< a value a node: how far a plane wall of friction held it in this step, 0 to 1
 };
 
 /// One average of a block of nodes.
@@ -42,8 +43,9 @@ T* averages_of(T* averages, std::uint32_t slot, Average which) {
                         cells_per_block<Dim>;
 }
 
-/// A plane wall on a face of the background grid.
-enum class PlaneWall : std::uint8_t { none, slip, no_slip };
+/// A plane wall on a face of the background grid. One of friction holds what presses it as one of no slip
+/// does, up to its limit (plane_friction.h).
+enum class PlaneWall : std::uint8_t { none, slip, no_slip, friction };
 
 /// Bounds along one axis in cells: material lies in [lower_cell, upper_cell). Ignored where the wall is
 /// `none`.
@@ -51,6 +53,7 @@ struct AxisBounds {
   PlaneWall lower = PlaneWall::none, upper = PlaneWall::none;
   int lower_cell = 0, upper_cell = 0;
   bool periodic = false;  ///< [lower_cell, upper_cell) wraps; a multiple of block_edge long
+  double lower_friction = 0.0, upper_friction = 0.0;  ///< Coulomb's coefficients, of PlaneWall::friction
 };
 
 /// A particle that left its cell in this step: by one cell at most along each axis.

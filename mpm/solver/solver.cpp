@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mpm/boundary/nearby_walls.h"
+#include "mpm/boundary/plane_friction.h"
 #include "mpm/boundary/wall_contact.h"
 #include "mpm/material/deviator.h"
 #include "mpm/solver/block_shares.h"
@@ -130,7 +131,7 @@ class SolverOf final : public Solver {
   }
   std::size_t bytes() const override {
     return particles_.bytes() + blocks_.bytes() +
-           (arenas_.size() + nodes_.size() + averages_.size()) * sizeof(T);
+           (arenas_.size() + nodes_.size() + averages_.size() + holds_.size()) * sizeof(T);
   }
   int threads() const override { return threads_; }
   const std::string& instruction_set() const override { return instruction_set_; }
@@ -174,6 +175,9 @@ class SolverOf final : public Solver {
     const double full =
         settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
     p.smallest_mass = static_cast<T>(full * 1e-25);
+    const typename PlaneFriction<T>::Grid planes{
+        settings.dimension, settings.transfer == Transfer::quadratic_apic, settings.bounds};
+    if (PlaneFriction<T>::is_needed(planes)) plane_friction_ = std::make_unique<PlaneFriction<T>>(planes);
     if (settings.walls.empty()) return;
     contact_ = std::make_unique<WallContact<T>>(
         typename WallContact<T>::Grid{settings.dimension, settings.transfer == Transfer::quadratic_apic,
@@ -242,6 +246,10 @@ class SolverOf final : public Solver {
         averages_ = std::move(more);
       }
     }
+    if (plane_friction_) {
+      const std::size_t size = slots * static_cast<std::size_t>(power(block_edge, settings_.dimension));
+      if (holds_.size() < size) holds_ = AlignedArray<T>(with_spare(size));
+    }
     views_.clear();
     for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
     share_out();
@@ -298,8 +306,9 @@ class SolverOf final : public Solver {
       if (nearby_walls_->follow(time_ + static_cast<double>(parameters_.step))) mark_walls_nearby();
       contact_->place(blocks_, time_);
     }
+    if (plane_friction_) plane_friction_->place(blocks_);
     const ParticleView<T>& view = particles_.view();
-    const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
+    const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data(), holds_.data()};
     double marks[6] = {};
     shares_.begin();
     node_shares_.begin();
@@ -329,9 +338,9 @@ class SolverOf final : public Solver {
       });
       mark(1);
       over_nodes(0, kernels_.update_nodes);
-      if (contact_) {
+      if (contact_ || plane_friction_) {
 #pragma omp single
-        wall_work_ = contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
+        hold_walls(grid);
       }
       mark(2);
       over_blocks(1, [&](const BlockView& block) {
@@ -343,9 +352,9 @@ class SolverOf final : public Solver {
       if (smooth()) over_nodes(1, kernels_.average_dilatation);
       if (kernels_.remapped_to_particles) {
         over_nodes(2, kernels_.remap_nodes);
-        if (contact_) {
+        if (contact_ || plane_friction_) {
 #pragma omp single
-          contact_->apply_to_remapped(grid.nodes, drive_);
+          hold_walls_remapped(grid);
         }
         mark(4);
         over_blocks(2, [&](const BlockView& block) {
@@ -361,6 +370,19 @@ class SolverOf final : public Solver {
     times_.nodes += marks[2] - marks[1];
     times_.grid_to_particles += marks[3] - marks[2] + marks[5] - marks[4];
     if (kernels_.remapped_to_particles) times_.nodes += marks[4] - marks[3];
+  }
+
+  /// Holds the nodes to every wall that the arenas do not hold themselves. Planes of friction are asked again
+  /// after walls of any shape, which lean on what the planes hold.
+  void hold_walls(const Grid<T>& grid) {
+    if (plane_friction_) plane_friction_->hold(grid.nodes);
+    if (contact_) wall_work_ += contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
+    if (plane_friction_ && contact_) plane_friction_->hold_again(grid.nodes);
+    if (plane_friction_) wall_work_ += plane_friction_->finish(grid.nodes, grid.holds);
+  }
+  void hold_walls_remapped(const Grid<T>& grid) {
+    if (plane_friction_) plane_friction_->hold_remapped(grid.nodes);
+    if (contact_) contact_->apply_to_remapped(grid.nodes, drive_);
   }
 
   bool smooth() const { return parameters_.dilatation == Dilatation::smooth; }
@@ -504,12 +526,13 @@ class SolverOf final : public Solver {
   double apic_relaxation_time_ = 0.0;
   std::unique_ptr<WallContact<T>> contact_;    ///< null where no wall but planes along the grid is given
   std::unique_ptr<NearbyWalls> nearby_walls_;  ///< likewise
-  double time_ = 0.0;                          ///< s
-  double drive_ = 0.0;                         ///< m/s that the driving force gives in a step
-  double wall_work_ = 0.0;                     ///< J in this step
+  std::unique_ptr<PlaneFriction<T>> plane_friction_;  ///< null where no plane along the grid has friction
+  double time_ = 0.0;                                 ///< s
+  double drive_ = 0.0;                                ///< m/s that the driving force gives in a step
+  double wall_work_ = 0.0;                            ///< J in this step
   int threads_ = 1;
   int tile_capacity_ = usual_tile_capacity;
-  AlignedArray<T> arenas_, nodes_, averages_;
+  AlignedArray<T> arenas_, nodes_, averages_, holds_;
   std::vector<AlignedArray<T>> workspace_memory_;
   std::vector<Workspace<T>> workspaces_;
   std::vector<BlockView> views_;

@@ -104,10 +104,10 @@ void fold_scalars(T* plane, const BlockView& block, const AxisBounds* bounds) {
     }
 }
 
-/// Copies one average of the nodes that a block's particles can see, and mirrors it across plane walls.
-template <class T, int Dim>
-void load_average(const StepParameters<T>& step, const BlockView& block, const T* averages, Average which,
-                  T* plane) {
+/// Copies a scalar of the nodes that a block's particles can see: `of_slot` says where those of a block of
+/// nodes lie.
+template <class T, int Dim, class OfSlot>
+void load_scalar(const BlockView& block, OfSlot of_slot, T* plane) {
   for (int i = 0; i < arena_edge; ++i)
     for (int j = 0; j < (Dim == 3 ? arena_edge : 1); ++j)
       for (int half = 0; half < 2; ++half) {
@@ -117,8 +117,16 @@ void load_average(const StepParameters<T>& step, const BlockView& block, const T
                                    : i % block_edge * block_edge;
         // What a row gets too much, the next one puts right.
         record_at(plane + arena_index<Dim>(i, j, half * block_edge)) =
-            record_at(averages_of<Dim>(averages, block.plus[delta], which) + local);
+            record_at(of_slot(block.plus[delta]) + local);
       }
+}
+
+/// Copies one average of the nodes that a block's particles can see, and mirrors it across plane walls.
+template <class T, int Dim>
+void load_average(const StepParameters<T>& step, const BlockView& block, const T* averages, Average which,
+                  T* plane) {
+  load_scalar<T, Dim>(
+      block, [&](std::uint32_t slot) { return averages_of<Dim>(averages, slot, which); }, plane);
   for (int a = 0; a < Dim; ++a)
     for (int side = 0; side < 2; ++side) {
       const PlaneWall wall = side == 0 ? step.bounds[a].lower : step.bounds[a].upper;
@@ -128,6 +136,18 @@ void load_average(const StepParameters<T>& step, const BlockView& block, const T
       across_layers<Dim>(a, side == 0 ? cell : cell + 2, cell + 1,
                          [&](int ghost, int image) { plane[ghost] = plane[image]; });
     }
+}
+
+/// How far plane walls of friction hold the nodes that a block's particles can see; null where no wall has
+/// friction.
+template <class T, int Dim>
+const T* load_holds(const BlockView& block, const Grid<T>& grid, T* plane) {
+  if (!grid.holds) return nullptr;
+  load_scalar<T, Dim>(
+      block,
+      [&](std::uint32_t slot) { return grid.holds + static_cast<std::size_t>(slot) * cells_per_block<Dim>; },
+      plane);
+  return plane;
 }
 
 /// One scalar of a cell's nodes as differences along every axis, as CellField has records.

@@ -14,12 +14,20 @@ constexpr double drop_filling = 0.2;
 /// of a cell and a half has a half there (quadratic functions), one of two cells seven eighths.
 constexpr double covered_from = 0.7, wholly_covered_from = 0.95;
 
-/// How far the cells along no-slip plane walls are covered with material, from 0 to 1, for a tile's
-/// particles; null if its block has no such wall.
+/// Whether a plane wall may hold what lies along it.
+FLOWREST_INLINE bool may_hold(PlaneWall wall) {
+  return wall == PlaneWall::no_slip || wall == PlaneWall::friction;
+}
+
+/// How far the cells along plane walls that hold them are covered with material, from 0 to 1, for a tile's
+/// particles; null if its block has no such wall. Beside a wall of friction it counts as far as the wall
+/// holds: `holds` are of the block's nodes, null where there is no such wall.
 template <class T, int Dim, class Shape>
-const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena) {
+const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena,
+                              const T* holds) {
   struct Side {
     int axis, cell, node;  ///< the cell at the wall, and which of its nodes along the axis is furthest off it
+    int held;              ///< which of them a wall of friction holds; -1: one of no slip
   };
   Side sides[2 * Dim];
   int count = 0;
@@ -28,8 +36,11 @@ const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile,
     const int lower = bounds.lower_cell - tile.block.origin[a],
               upper = bounds.upper_cell - 1 - tile.block.origin[a];
     const auto inside = [](int cell) { return cell >= 0 && cell < block_edge; };
-    if (bounds.lower == PlaneWall::no_slip && inside(lower)) sides[count++] = {a, lower, Shape::nodes - 1};
-    if (bounds.upper == PlaneWall::no_slip && inside(upper)) sides[count++] = {a, upper, 0};
+    const auto held = [](PlaneWall wall, int node) { return wall == PlaneWall::friction ? node : -1; };
+    constexpr int middle = Shape::nodes / 2;  // the first node inside, of linear functions that on the wall
+    if (may_hold(bounds.lower) && inside(lower))
+      sides[count++] = {a, lower, Shape::nodes - 1, held(bounds.lower, Shape::nodes == 3 ? middle : 0)};
+    if (may_hold(bounds.upper) && inside(upper)) sides[count++] = {a, upper, 0, held(bounds.upper, middle)};
   }
   if (count == 0) return nullptr;
 
@@ -43,20 +54,23 @@ const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile,
       if (place[side.axis == 0 ? 0 : side.axis + 3 - Dim] != side.cell) continue;
       // Of the nodes on the far layer, the one over the cell's middle; linear functions have none there, and
       // all of theirs must be covered.
-      T least = T(1);
+      T least = T(1), least_held = T(1);
       constexpr int from = Shape::nodes == 3 ? 1 : 0;
       for (int i = from; i < 2; ++i)
         for (int j = Dim == 3 ? from : 1; j < 2; ++j) {
           int node[3];
           node[0] = node[1] = node[2] = i;
           if constexpr (Dim == 3) node[side.axis == 2 ? 1 : 2] = j;
-          node[side.axis] = side.node;
-          const int at =
-              Dim == 3 ? arena_index<Dim>(node[0], node[1], node[2]) : arena_index<Dim>(node[0], 0, node[1]);
-          least = minimum(least, arena[(cell_base<T, Dim>(cell) + at) * node_values + record]);
+          const auto node_at = [&](int along) {
+            node[side.axis] = along;
+            return cell_base<T, Dim>(cell) + (Dim == 3 ? arena_index<Dim>(node[0], node[1], node[2])
+                                                       : arena_index<Dim>(node[0], 0, node[1]));
+          };
+          least = minimum(least, arena[node_at(side.node) * node_values + record]);
+          if (side.held >= 0) least_held = minimum(least_held, holds[node_at(side.held)]);
         }
       constexpr T span = T(1.0 / (wholly_covered_from - covered_from));
-      most = maximum(most, minimum((least - T(covered_from)) * span, T(1)));
+      most = maximum(most, least_held * minimum((least - T(covered_from)) * span, T(1)));
     }
     const int first = tile.cell_first(cell);
     for (int q = first; q < first + tile.cell_count(cell); ++q) covered[q] = most;

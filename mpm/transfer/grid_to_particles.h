@@ -74,12 +74,12 @@ void give_dilatation(Tile<T, Dim>& tile, const T* const* x, const T* volume, T* 
                                  tile.cell_count(cell));
 }
 
-/// Strain and averaged dilatation of a tile from its velocity gradients. `planes` of the block's arena, where
-/// not null, take the dilatation (smooth B-bar).
+/// Strain and averaged dilatation of a tile from its velocity gradients. `holds` are those of walls of
+/// friction (load_holds). `planes` of the block's arena, where not null, take the dilatation (smooth B-bar).
 template <class T, int Dim, bool Axisymmetric, class Shape>
-void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* const* x,
-                 const Gathered<T, Dim>& gathered, const T* mass, const T* filling, T* planes,
-                 Strain<T, Dim>& s) {
+void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena, const T* holds,
+                 const T* const* x, const Gathered<T, Dim>& gathered, const T* mass, const T* filling,
+                 T* planes, Strain<T, Dim>& s) {
   const int count = tile.count;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) s.gradient[i][j] = gathered.gradient[i][j];
@@ -107,7 +107,8 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
   if (filling)
-    heed_filling<T, Dim>(step, s, filling, covered_beside_walls<T, Dim, Shape>(step, tile, arena), count);
+    heed_filling<T, Dim>(step, s, filling, covered_beside_walls<T, Dim, Shape>(step, tile, arena, holds),
+                         count);
   if (planes) {
     give_dilatation<T, Dim>(tile, x, volume, s.dilatation, planes);
   } else {
@@ -205,13 +206,13 @@ void move_particles(const StepParameters<T>& step, Tile<T, Dim>& tile, T* const*
 /// Strain, stress and motion of a tile whose velocity gradients are gathered.
 template <class T, int Dim, bool Axisymmetric, class Shape>
 void deform_and_move(const StepParameters<T>& step, const ParticleView<T>& particles, Tile<T, Dim>& tile,
-                     const T* arena, T* const* x, const Gathered<T, Dim>& gathered, const T* const* advection,
-                     const T* filling, T* planes) {
+                     const T* arena, const T* holds, T* const* x, const Gathered<T, Dim>& gathered,
+                     const T* const* advection, const T* filling, T* planes) {
   Strain<T, Dim> s;
   const T* mass = tile.open(particles.mass);
   s.ratio = tile.open(particles.volume_ratio);
   s.rate = tile.open(particles.rate);
-  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, x, gathered, mass, filling, planes, s);
+  make_strain<T, Dim, Axisymmetric, Shape>(step, tile, arena, holds, x, gathered, mass, filling, planes, s);
   update_stress<T, Dim, Axisymmetric>(step, particles, tile, mass, s);
   move_particles<T, Dim, Shape>(step, tile, x, advection, mass);
 }
@@ -232,7 +233,7 @@ void relax(T keep, const T* increment, T* own, int count) {
 /// published (Jiang et al. 2015). Then one field gives the motion and what particles carry on.
 template <class T, int Dim, bool Axisymmetric, Own Kept>
 void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles, const BlockView& block,
-                const T* arena, T* planes, const Workspace<T>& workspace) {
+                const T* arena, const T* holds, T* planes, const Workspace<T>& workspace) {
   constexpr bool kept = Kept == Own::kept;
   constexpr Wanted motion_wanted{true, true, !kept}, increment_wanted{true, false, true};
   const T per_cell = T(1) / step.cell;
@@ -269,8 +270,8 @@ void apic_tiles(const StepParameters<T>& step, const ParticleView<T>& particles,
       carry_on(particles.velocity[c], increment.value[c]);
       for (int a = 0; a < Dim; ++a) carry_on(particles.affine[c * Dim + a], increment.affine[c][a]);
     }
-    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, x, motion, motion.value,
-                                                     filling, planes);
+    deform_and_move<T, Dim, Axisymmetric, Quadratic>(step, particles, tile, arena, holds, x, motion,
+                                                     motion.value, filling, planes);
   }
 }
 
@@ -279,15 +280,17 @@ void apic_to_particles(const StepParameters<T>& step, const ParticleView<T>& par
                        const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
   load_arena<T, Dim, Quadratic>(step, block, grid.nodes, arena);
+  alignas(64) T plane_of_holds[plane_values<Dim>];
+  const T* const holds = load_holds<T, Dim>(block, grid, plane_of_holds);
   T* planes = nullptr;
   if (step.dilatation == Dilatation::smooth) {
     planes = grid.arenas + static_cast<std::size_t>(block.arena) * nodes_per_arena<Dim> * node_values;
     for (int n = 0; n < plane_values<Dim>; ++n) planes[n] = T(0);
   }
   if (step.keep > T(0)) {
-    apic_tiles<T, Dim, Axisymmetric, Own::kept>(step, particles, block, arena, planes, workspace);
+    apic_tiles<T, Dim, Axisymmetric, Own::kept>(step, particles, block, arena, holds, planes, workspace);
   } else {
-    apic_tiles<T, Dim, Axisymmetric, Own::forgotten>(step, particles, block, arena, planes, workspace);
+    apic_tiles<T, Dim, Axisymmetric, Own::forgotten>(step, particles, block, arena, holds, planes, workspace);
   }
   if (planes) fold_scalars<T, Dim>(planes, block, step.bounds);
 }
@@ -343,6 +346,8 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
                            const BlockView& block, const Grid<T>& grid, const Workspace<T>& workspace) {
   alignas(64) T arena[nodes_per_arena<Dim> * node_values];
   load_arena<T, Dim, Linear>(step, block, grid.nodes, arena);
+  alignas(64) T plane_of_holds[plane_values<Dim>];
+  const T* const holds = load_holds<T, Dim>(block, grid, plane_of_holds);
   constexpr Wanted wanted{Axisymmetric, true, false};
   const T per_cell = T(1) / step.cell;
   Tile<T, Dim> tile(block, workspace);
@@ -358,8 +363,8 @@ void remapped_to_particles(const StepParameters<T>& step, const ParticleView<T>&
       const CellField<T, Dim, Linear, node_values> field(arena + cell_base<T, Dim>(cell) * node_values);
       gather<T, Dim, Linear, node_values, wanted>(field, 1, x, per_cell, first, n, g, filling);
     }
-    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, x, g, advection, filling,
-                                                  nullptr);
+    deform_and_move<T, Dim, Axisymmetric, Linear>(step, particles, tile, arena, holds, x, g, advection,
+                                                  filling, nullptr);
   }
 }
 
