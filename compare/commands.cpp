@@ -70,31 +70,30 @@ void add_compare(CLI::App& app) {
   struct Arguments {
     std::vector<std::string> runs;
     std::string output = "report";
-    double spread_rate_mm = 0.0;
+    std::optional<double> spread_rate_mm;
     Options options;
     bool no_figures = false, json = false;
     std::string clip;
   };
   auto arguments = std::make_shared<Arguments>();
-  arguments->spread_rate_mm = 1e3 * arguments->options.rest_spread_rate;
   CLI::App* command = app.add_subcommand("compare", "Compare runs and write a report");
   command->add_option("RUN", arguments->runs, "Run directories, or folders of them")->required();
   command->add_option("-o,--output", arguments->output, "Folder of the report")->capture_default_str();
   command
       ->add_option("--rest-shear-rate", arguments->options.rest_shear_rate,
-                   "At rest once the 99th percentile of the shear rate stays below, 1/s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+                   "At rest once the 99th percentile of the shear rate stays below, 1/s "
+                   "(gauges.rest_shear_rate of the first run unless given: 0.05 of the standard apparatus)")
+      ->check(CLI::PositiveNumber);
   command
       ->add_option("--rest-spread-rate", arguments->spread_rate_mm,
-                   "At rest once the spread grows by less, mm/s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+                   "At rest once the spread grows by less, mm/s (gauges.rest_rate of the first run unless "
+                   "given: 0.5 of the standard apparatus)")
+      ->check(CLI::PositiveNumber);
   command
       ->add_option("--residual-window", arguments->options.residual_window,
-                   "The last seconds of a run over which its residual speed is taken, s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+                   "The last seconds of a run over which its residual speed is taken, s (2.5 times "
+                   "gauges.rate_window unless given: 5 of the standard apparatus)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--no-figures", arguments->no_figures,
                     "Leave out the figures for papers (figures/*.svg and *.png)");
   command
@@ -108,7 +107,7 @@ void add_compare(CLI::App& app) {
       });
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
-    arguments->options.rest_spread_rate = 1e-3 * arguments->spread_rate_mm;
+    if (arguments->spread_rate_mm) arguments->options.rest_spread_rate = 1e-3 * *arguments->spread_rate_mm;
     const std::vector<std::filesystem::path> named(arguments->runs.begin(), arguments->runs.end());
     const Comparison comparison = compare_runs(find_runs(named), arguments->options);
     write_comparison(comparison, arguments->output);

@@ -10,6 +10,7 @@
 #include "compare/pairs.h"
 #include "compare/run_view.h"
 #include "compare/square.h"
+#include "runs/gauges.h"
 
 namespace flowrest::compare {
 
@@ -24,7 +25,7 @@ std::vector<double> common_grid(const Comparison& comparison) {
   for (const RunView& view : comparison.runs) {
     for (const auto& profile : view.run.profiles)
       for (std::size_t i = 0; i < profile.coordinate.size(); ++i)
-        if (!comparison.radial || profile.value[i] > 1e-5)
+        if (!comparison.radial || profile.value[i] > 0.01 * comparison.grain.length)
           extent = std::max(extent, std::abs(profile.coordinate[i]));
     if (const auto height = setting(view, "/geometry/height"); !comparison.radial && height)
       extent = std::max(extent, 0.5 * *height);
@@ -52,10 +53,10 @@ std::vector<double> frame_times(double end) {
   return frames;
 }
 
-std::vector<double> pair_times(double end) {
+std::vector<double> pair_times(double end, double unit) {
   std::vector<double> times;
   for (const double t : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 40.0, 60.0, 120.0, 300.0})
-    if (t < end * (1.0 - 1e-9)) times.push_back(t);
+    if (t * unit < end * (1.0 - 1e-9)) times.push_back(t * unit);
   times.push_back(end);
   return times;
 }
@@ -113,15 +114,31 @@ double common_end(const std::vector<RunView>& views) {
 }
 
 /// The arbitrary stops at which the gauge is read.
-std::vector<double> stop_times(const Options& options, double end) {
+std::vector<double> stop_times(const Thresholds& thresholds, double end) {
   std::vector<double> stops;
-  const double step = round_step(options.stop_to / 120.0);
-  for (int i = 0; options.stop_from + i * step <= std::min(options.stop_to, end) * (1.0 + 1e-9); ++i)
-    stops.push_back(options.stop_from + i * step);
+  const double step = round_step(thresholds.stop_to / 120.0);
+  for (int i = 0; thresholds.stop_from + i * step <= std::min(thresholds.stop_to, end) * (1.0 + 1e-9); ++i)
+    stops.push_back(thresholds.stop_from + i * step);
   return stops;
 }
 
 }  // namespace
+
+Thresholds thresholds_of(const scenes::Gauges& gauges, const Options& options) {
+  const scenes::Gauges standard;
+  Thresholds t;
+  const double time = gauges.rate_window / standard.rate_window;
+  t.time_unit = round_step(time);
+  t.rest_shear_rate = options.rest_shear_rate.value_or(gauges.rest_shear_rate);
+  t.rest_spread_rate = options.rest_spread_rate.value_or(gauges.rest_rate);
+  t.still_speed = gauges.still_speed;
+  t.rate_window = gauges.rate_window;
+  t.residual_window = options.residual_window.value_or(t.residual_window * time);
+  for (double& at : t.overshoot_times) at *= t.time_unit;
+  t.stop_from *= t.time_unit;
+  t.stop_to *= t.time_unit;
+  return t;
+}
 
 std::vector<fs::path> find_runs(const std::vector<fs::path>& named) {
   std::vector<fs::path> found;
@@ -158,8 +175,10 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   for (const fs::path& directory : directories) read.push_back(runs::read_run(directory));
 
   Comparison comparison;
-  comparison.options = options;
   comparison.kind = common_kind(read);
+  comparison.gauges = runs::gauges_of(read.front());
+  comparison.thresholds = thresholds_of(comparison.gauges, options);
+  comparison.grain = words::grain_of(comparison.gauges, comparison.kind);
   for (runs::Run& run : read) comparison.runs.push_back(view_of(std::move(run), comparison.kind));
   make_labels_unique(comparison.runs);
   sort_runs(comparison.runs);
@@ -167,6 +186,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   comparison.radial = comparison.kind == scenes::Kind::slump &&
                       word(comparison.runs.front().run.info, "/settings/geometry/dimension") != "plane";
   check_same_scene(comparison);
+  note_gauges(comparison);
 
   for (const RunView& view : comparison.runs)
     if (const auto cell = setting(view, "/" + view.solver + "/cell"))
@@ -174,8 +194,8 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   comparison.end = common_end(comparison.runs);
   comparison.grid = common_grid(comparison);
   comparison.frames = frame_times(comparison.end);
-  comparison.times = pair_times(comparison.end);
-  comparison.stops = stop_times(options, comparison.end);
+  comparison.times = pair_times(comparison.end, comparison.thresholds.time_unit);
+  comparison.stops = stop_times(comparison.thresholds, comparison.end);
 
   for (RunView& view : comparison.runs) measure(view, comparison);
   measure_approach(comparison);

@@ -8,25 +8,37 @@
 #include <vector>
 
 #include "compare/measures/series.h"
+#include "compare/words.h"
 #include "runs/run_directory.h"
 
 /// Compares run directories, whoever made them: measures of each, differences between them, and what they say
 /// in words.
 namespace flowrest::compare {
 
-/// What the measures are taken by. Every threshold is named in comparison.json.
+/// What a caller asks the measures to be taken by; what is empty follows from the runs' [gauges].
 struct Options {
-  double rest_shear_rate = 0.05;   ///< 1/s: at rest once the 99th percentile of the shear rate stays below
-  double rest_spread_rate = 5e-4;  ///< m/s: at rest once the spread grows by less
+  std::optional<double>
+      rest_shear_rate;  ///< 1/s: at rest once the 99th percentile of the shear rate stays below
+  std::optional<double> rest_spread_rate;  ///< m/s: at rest once the spread grows by less
+  std::optional<double> residual_window;   ///< s, the last of a run, for its residual speed
+};
+
+/// What the measures are taken by: speeds and times of the standard apparatus, or as a body of another size
+/// has them. Every threshold is named in comparison.json.
+struct Thresholds {
+  double rest_shear_rate = 0.05;   ///< 1/s
+  double rest_spread_rate = 5e-4;  ///< m/s
   double still_speed = 1e-4;  ///< m/s: a law that can rest, and spreads slower than this, has come to rest
   double rest_velocity_fraction = 0.01;  ///< of a duct's largest plug velocity: stopped once it stays below
   double rate_window = 2.0;              ///< s, over which rates are taken
-  double residual_window = 5.0;          ///< s, the last of a run, for its residual speed
+  double residual_window = 5.0;          ///< s
   double creep_factor = 3.0;  ///< a residual up to this many times the predicted creep is explained by it
+  double time_unit = 1.0;     ///< s, a round time: 1 s of the standard apparatus
   std::vector<double> overshoot_times = {20.0, 25.0, 60.0};  ///< s
   double stop_from = 10.0;                                   ///< s, where arbitrary stops begin
   double stop_to = 60.0;                                     ///< s
 };
+Thresholds thresholds_of(const scenes::Gauges&, const Options&);
 
 /// Why a run still moves at its end, as far as known.
 enum class Cause {
@@ -53,10 +65,10 @@ struct Measures {
   std::optional<double> gauge_end;    ///< of the gauge, SI, at the end
   std::optional<double> uncertainty;  ///< of that, SI, all but ducts: the largest of what is known
   std::string uncertainty_source;     ///< what it is: "the grid study among these runs", "a cell", ...
-  std::optional<double> spread_1_5mm,
-      spread_6mm;                       ///< of the last profile: the sensitivity to the 3 mm threshold
-  std::optional<double> centre_depth;   ///< m, of the last profile
-  std::optional<double> rest_declared;  ///< s, by the run itself
+  std::optional<double> spread_at_half,
+      spread_at_twice;  ///< the depth of the spread, of the last profile: the sensitivity to that depth
+  std::optional<double> centre_depth;                             ///< m, of the last profile
+  std::optional<double> rest_declared;                            ///< s, by the run itself
   std::optional<double> rest_by_shear_rate, rest_by_spread_rate;  ///< s
   std::optional<double> growth_to_come;  ///< m, a bound the run itself puts on what its spread may still gain
   std::optional<double> stop_after_step;  ///< s after the last change of force, ducts
@@ -89,6 +101,8 @@ struct RunView {
   bool noisy = false;
   std::string noise;    ///< why
   std::string trouble;  ///< "interrupted at 12 s", "failed at 3 s: why"; empty where the run came to its end
+  scenes::Gauges gauges;     ///< what its gauges are defined by
+  bool unread = false;       ///< its last row has nothing to read of the gauge
   std::string walls_differ;  ///< where its walls are not those of the scene, in words; empty where they are
   Series gauge;       ///< gauge_of(kind), SI: spread or front (m), plug velocity (m/s), discharged fraction
   Series shear_rate;  ///< 99th percentile, 1/s
@@ -143,7 +157,9 @@ struct Finding {
 };
 
 struct Comparison {
-  Options options;
+  Thresholds thresholds;
+  scenes::Gauges gauges;  ///< what the gauges of the first run are defined by
+  words::Grain grain;     ///< the least that is told of lengths, speeds and times
   std::string title;
   scenes::Kind kind = scenes::Kind::slump;
   bool radial = true;  ///< profiles are against a radius

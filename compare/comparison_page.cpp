@@ -46,6 +46,16 @@ std::string capitalised(std::string text) {
 constexpr Format fixed(int digits) { return {Format::Kind::fixed, digits}; }
 constexpr Format signed_fixed(int digits) { return {Format::Kind::signed_fixed, digits}; }
 constexpr Format significant(int digits) { return {Format::Kind::significant, digits}; }
+/// Lengths in mm as far as they are told, and `more` digits.
+Format lengths(const Comparison& comparison, int more = 0) {
+  return fixed(comparison.grain.decimals() + more);
+}
+Format signed_lengths(const Comparison& comparison) { return signed_fixed(comparison.grain.decimals()); }
+/// Times with so many digits of the standard apparatus, more of what is over sooner.
+Format times(const Comparison& comparison, int digits) {
+  return fixed(digits +
+               std::max(0, static_cast<int>(std::ceil(-std::log10(comparison.thresholds.time_unit)))));
+}
 
 /// Runs that agree in solver and law are told apart by further dashes.
 std::vector<report::Entry> entries_of(const Comparison& comparison) {
@@ -86,7 +96,7 @@ Plot gauge_plot(const Comparison& comparison) {
             {},
             true,
             std::nullopt};
-  plot.caption = gauge_of(comparison.kind).caption;
+  plot.caption = gauge_of(comparison.kind).caption_for(comparison.gauges, comparison.kind);
   double lowest_end = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const RunView& view = comparison.runs[i];
@@ -101,7 +111,10 @@ Plot gauge_plot(const Comparison& comparison) {
     plot.curves.push_back(std::move(curve));
   }
   // A slump's whole rise hides what matters: how its runs part at the end.
-  if (slump && std::isfinite(lowest_end)) plot.focus = 10.0 * std::floor(0.09 * lowest_end);
+  if (slump && std::isfinite(lowest_end)) {
+    const double step = 1e4 * comparison.grain.length;  // mm: of the standard cone 10
+    plot.focus = step * std::floor(0.9 * lowest_end / step);
+  }
   return plot;
 }
 
@@ -109,7 +122,9 @@ Plot gauge_plot(const Comparison& comparison) {
 Chapter further_chapter(const Comparison& comparison) {
   Chapter chapter{"gauges", "What else was gauged", {}};
   for (const Gauge& gauge : further_gauges(comparison.kind)) {
-    Plot plot{.id = gauge.key, .title = gauge.name + " against time", .caption = gauge.caption};
+    Plot plot{.id = gauge.key,
+              .title = gauge.name + " against time",
+              .caption = gauge.caption_for(comparison.gauges, comparison.kind)};
     plot.x = time_axis(comparison);
     plot.y = {gauge.name, gauge.unit, false, true};
     for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
@@ -151,11 +166,13 @@ std::optional<Block> profiles(const Comparison& comparison) {
   for (const double x : comparison.grid) frames.coordinate.push_back(1e3 * x);
   frames.upright = !slump;
   bool any = false;
+  // A hundredth of what is told of lengths is more than a screen shows.
+  const double per_mm = 0.1 / comparison.grain.length;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     report::Frames::Curve curve{static_cast<int>(i), {}};
     for (const double t : comparison.frames) {
       auto values = comparison.runs[i].profile(t, comparison.grid).value_or(std::vector<double>());
-      for (double& v : values) v = slump ? std::round(1e5 * v) / 1e2 : v;
+      for (double& v : values) v = slump ? std::round(1e3 * v * per_mm) / per_mm : v;
       any = any || !values.empty();
       curve.values.push_back(std::move(values));
     }
@@ -203,12 +220,13 @@ Table::Cell verdict(const RunView& view) {
 }
 
 std::string measures_caption(const Comparison& comparison) {
-  const Options& o = comparison.options;
+  const Thresholds& o = comparison.thresholds;
   if (comparison.kind == scenes::Kind::v_funnel)
-    return "Light is seen once some line of sight through the outlet holds less than 3 mm of material. ± is "
-           "the "
-           "difference to another grid, taken on to zero cell size at first order. A dash: not measured, or "
-           "never.";
+    return fmt::format(
+        "Light is seen once some line of sight through the outlet holds less than {:g} mm of material. ± is "
+        "the difference to another grid, taken on to zero cell size at first order. A dash: not measured, or "
+        "never.",
+        1e3 * comparison.gauges.light_depth);
   if (is_duct(comparison))
     return fmt::format(
         "A duct has stopped once its plug stays below {:g} % of its largest velocity. A dash: not measured, "
@@ -238,24 +256,28 @@ std::string measures_caption(const Comparison& comparison) {
 Table measures_table(const Comparison& comparison) {
   std::vector<RunColumn> columns;
   if (is_slump(comparison)) {
-    columns = {measure_column("Spread at the end", "mm", fixed(0), &Measures::gauge_end, 1e3),
-               measure_column("±", "mm", fixed(0), &Measures::uncertainty, 1e3),
-               measure_column("at 1.5 mm depth", "mm", fixed(0), &Measures::spread_1_5mm, 1e3),
-               measure_column("at 6 mm depth", "mm", fixed(0), &Measures::spread_6mm, 1e3),
-               measure_column("Centre", "mm", fixed(1), &Measures::centre_depth, 1e3),
-               {{"Recorded until", "s", fixed(0)},
+    const double depth_mm = 1e3 * comparison.gauges.spread_depth;
+    const Format mm = lengths(comparison), finer = lengths(comparison, 1), seconds = times(comparison, 1);
+    columns = {measure_column("Spread at the end", "mm", mm, &Measures::gauge_end, 1e3),
+               measure_column("±", "mm", mm, &Measures::uncertainty, 1e3),
+               measure_column(fmt::format("at {:g} mm depth", 0.5 * depth_mm), "mm", mm,
+                              &Measures::spread_at_half, 1e3),
+               measure_column(fmt::format("at {:g} mm depth", 2.0 * depth_mm), "mm", mm,
+                              &Measures::spread_at_twice, 1e3),
+               measure_column("Centre", "mm", finer, &Measures::centre_depth, 1e3),
+               {{"Recorded until", "s", times(comparison, 0)},
                 [](const RunView& view) { return view.exact ? Table::Cell() : cell(view.measures.end); }},
-               measure_column("Rest, declared", "s", fixed(1), &Measures::rest_declared),
-               measure_column("Still to come, at most", "mm", fixed(1), &Measures::growth_to_come, 1e3),
-               measure_column("Rest by shear rate", "s", fixed(1), &Measures::rest_by_shear_rate),
-               measure_column("Rest by spread rate", "s", fixed(1), &Measures::rest_by_spread_rate)};
-    for (const double time : comparison.options.overshoot_times)
-      columns.push_back({{fmt::format("Past the arrested spread at {:g} s", time), "mm", signed_fixed(0)},
-                         [time](const RunView& view) {
-                           const auto at = view.measures.overshoot.find(time);
-                           return at == view.measures.overshoot.end() ? Table::Cell()
-                                                                      : Table::Cell(1e3 * at->second);
-                         }});
+               measure_column("Rest, declared", "s", seconds, &Measures::rest_declared),
+               measure_column("Still to come, at most", "mm", finer, &Measures::growth_to_come, 1e3),
+               measure_column("Rest by shear rate", "s", seconds, &Measures::rest_by_shear_rate),
+               measure_column("Rest by spread rate", "s", seconds, &Measures::rest_by_spread_rate)};
+    for (const double time : comparison.thresholds.overshoot_times)
+      columns.push_back(
+          {{fmt::format("Past the arrested spread at {:g} s", time), "mm", signed_lengths(comparison)},
+           [time](const RunView& view) {
+             const auto at = view.measures.overshoot.find(time);
+             return at == view.measures.overshoot.end() ? Table::Cell() : Table::Cell(1e3 * at->second);
+           }});
   } else if (!is_duct(comparison)) {
     for (const Reading& reading : readings_of(comparison.kind)) {
       const auto part = [quantity = reading.quantity](std::optional<double> ReadValue::*member) {
@@ -264,16 +286,19 @@ Table measures_table(const Comparison& comparison) {
           return found == view.measures.readings.end() ? Table::Cell() : cell(found->second.*member);
         };
       };
-      const Format format = reading.unit == "mm" ? fixed(0) : reading.unit == "s" ? fixed(2) : significant(3);
+      const Format format = reading.unit == "mm"  ? lengths(comparison)
+                            : reading.unit == "s" ? times(comparison, 2)
+                                                  : significant(3);
       columns.push_back({{capitalised(reading.name), reading.unit, format}, part(&ReadValue::value)});
-      columns.push_back(
-          {{"± of " + reading.name, reading.unit, reading.unit == "mm" ? fixed(0) : significant(2)},
-           part(&ReadValue::uncertainty)});
+      columns.push_back({{"± of " + reading.name, reading.unit,
+                          reading.unit == "mm" ? lengths(comparison) : significant(2)},
+                         part(&ReadValue::uncertainty)});
     }
-    columns.push_back({{"Recorded until", "s", fixed(1)}, [](const RunView& view) {
+    columns.push_back({{"Recorded until", "s", times(comparison, 1)}, [](const RunView& view) {
                          return view.exact ? Table::Cell() : cell(view.measures.end);
                        }});
-    columns.push_back(measure_column("Rest by shear rate", "s", fixed(1), &Measures::rest_by_shear_rate));
+    columns.push_back(
+        measure_column("Rest by shear rate", "s", times(comparison, 1), &Measures::rest_by_shear_rate));
   } else {
     columns = {
         measure_column("Plug velocity at the end", "m/s", significant(4), &Measures::gauge_end),
@@ -299,9 +324,11 @@ std::string square_caption(const Comparison& comparison) {
       "what it does in "
       "MPM, which can be given to neither. Noise: the scatter of the four runs about their trend and half "
       "the change of their "
-      "spread when the edge is read at 1.5 instead of 6 mm, as root sum square. The other corners: {2} and "
+      "spread when the edge is read at {4:g} instead of {5:g} mm, as root sum square. The other corners: {2} "
+      "and "
       "{3}.",
-      label(square.foam_fluid), label(square.mpm_solid), label(square.mpm_fluid), label(square.foam_solid));
+      label(square.foam_fluid), label(square.mpm_solid), label(square.mpm_fluid), label(square.foam_solid),
+      500.0 * comparison.gauges.spread_depth, 2000.0 * comparison.gauges.spread_depth);
 }
 
 /// The difference at each time, split.
@@ -341,7 +368,7 @@ std::optional<Chapter> square_chapter(const Comparison& comparison) {
     curve.colour = colour == 0 ? -1 : colour - 1;
     curve.dash = colour++;
     plot.curves.push_back(std::move(curve));
-    table.columns.push_back({name, unit, is_duct(comparison) ? significant(3) : signed_fixed(0)});
+    table.columns.push_back({name, unit, is_duct(comparison) ? significant(3) : signed_lengths(comparison)});
   }
   for (const double time : comparison.times) {
     const auto at = std::lower_bound(square.at.begin(), square.at.end(), time - 1e-9,
@@ -359,7 +386,7 @@ std::optional<Chapter> shear_chapter(const Comparison& comparison) {
   Plot plot{"shear-rate",
             "99th percentile of the shear rate",
             fmt::format("Norm: sqrt(2 D:D). The customary threshold of rest is {:g} 1/s.",
-                        comparison.options.rest_shear_rate),
+                        comparison.thresholds.rest_shear_rate),
             time_axis(comparison),
             {"shear rate", "1/s", true, true, std::nullopt, std::nullopt},
             {}};
@@ -386,7 +413,7 @@ std::string residual_caption(const Comparison& comparison) {
   if (!is_slump(comparison))
     return fmt::format(
         "Measured: the median slope of the {} over the last {:g} s (of a short record, its last fifth).",
-        gauge_name(comparison), comparison.options.residual_window);
+        gauge_name(comparison), comparison.thresholds.residual_window);
   return fmt::format(
       "Measured: the median slope of the spread over the last {:g} s (of a short record, its last fifth). "
       "Predicted: on the arrested profile, "
@@ -398,7 +425,7 @@ std::string residual_caption(const Comparison& comparison) {
       "a law that comes to rest has no predicted creep. Exact: how fast a thin film of the exact material "
       "still approaches rest at that time, with the pull of its plug and without, where creep does not "
       "explain what moves.",
-      comparison.options.residual_window);
+      comparison.thresholds.residual_window);
 }
 
 std::optional<Chapter> residual_chapter(const Comparison& comparison) {
@@ -418,7 +445,7 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
     const Measures& m = view.measures;
     bars.categories.push_back(view.label + (view.noisy ? " (noisy)" : "") +
                               (view.trouble.empty() ? "" : " (incomplete)"));
-    const double floor = is_duct(comparison) ? 1e-8 : 1e-5;
+    const double floor = is_duct(comparison) ? 1e-8 : 10.0 * comparison.grain.speed;
     bars.groups[0].values.push_back(std::max(std::abs(*m.residual) * scale, floor));
     bars.groups[1].values.push_back(m.predicted_creep && *m.predicted_creep > 0.0 ? scale * *m.predicted_creep
                                                                                   : none);
@@ -490,7 +517,7 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
     plot.curves.push_back(std::move(curve));
   }
   if (plot.curves.empty()) return std::nullopt;
-  const Format format = slump ? fixed(0) : significant(3);
+  const Format format = slump ? lengths(comparison) : significant(3);
   const auto range = [](const RunView& view) {
     return *view.measures.stop_highest - *view.measures.stop_lowest;
   };
@@ -529,16 +556,16 @@ std::optional<Chapter> pairs_chapter(const Comparison& comparison) {
           : slump ? "Norms of the difference in depth on a common grid, over all that either run covers"
                   : "Norms of the difference in velocity on a common grid") +
           ": L1 the mean, L2 the root of the mean square, L∞ the largest."};
-  table.columns = {
-      {"Run", "", {}, true},
-      {"against", "", {}, true},
-      {"Differs in", "", {}, true},
-      {capitalised(gauge_name(comparison)), unit_of(comparison), slump ? signed_fixed(0) : significant(3)},
-      {"L1", unit, slump ? fixed(2) : significant(3)},
-      {"L2", unit, slump ? fixed(2) : significant(3)},
-      {"L∞", unit, slump ? fixed(1) : significant(3)},
-      {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
-      {"L2, relative", "%", significant(2)}};
+  table.columns = {{"Run", "", {}, true},
+                   {"against", "", {}, true},
+                   {"Differs in", "", {}, true},
+                   {capitalised(gauge_name(comparison)), unit_of(comparison),
+                    slump ? signed_lengths(comparison) : significant(3)},
+                   {"L1", unit, slump ? lengths(comparison, 2) : significant(3)},
+                   {"L2", unit, slump ? lengths(comparison, 2) : significant(3)},
+                   {"L∞", unit, slump ? lengths(comparison, 1) : significant(3)},
+                   {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
+                   {"L2, relative", "%", significant(2)}};
   table.choice = "Time";
   std::map<double, std::vector<Table::Row>> by_time;
   for (const Pair& pair : comparison.pairs)

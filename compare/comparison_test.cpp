@@ -1,5 +1,6 @@
 #include "compare/comparison.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,6 +56,11 @@ class ComparisonTest : public testing::Test {
   fs::path folder = temporary.path();
 };
 
+std::string runs_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 template <class Function>
 std::string message_of(Function function) {
   try {
@@ -100,8 +106,8 @@ TEST_F(ComparisonTest, MeasuresWhatTheFormulaSays) {
   EXPECT_NEAR(*creep.stop_highest - *creep.stop_lowest, 2.0 * (fluid.radius_at(60.0) - fluid.radius_at(10.0)),
               1e-6);
   EXPECT_NEAR(*evp.centre_depth, 0.0396, 1e-3);
-  EXPECT_GT(*evp.spread_1_5mm, *evp.gauge_end);
-  EXPECT_LT(*evp.spread_6mm, *evp.gauge_end);
+  EXPECT_GT(*evp.spread_at_half, *evp.gauge_end);
+  EXPECT_LT(*evp.spread_at_twice, *evp.gauge_end);
 }
 
 TEST_F(ComparisonTest, SplitsLawFromSolver) {
@@ -477,6 +483,133 @@ TEST_F(ComparisonTest, AnLBoxHasAnArrestedShapeForTheStructureItEndsWith) {
   // Broken down, it reaches the end.
   exact::write_exact_runs(box(), folder / "exact", 0.0);
   EXPECT_THAT(text(compared()), HasSubstr("600 mm, 35 mm high at the end (exact, arrested, flocculation 0)"));
+}
+
+/// One solid at rest and one fluid that creeps, of a size.
+Comparison solid_and_fluid(const fs::path& folder, double size) {
+  synthetic::Slump solid, fluid;
+  solid.size = fluid.size = size;
+  solid.end = 20.0;
+  solid.status = runs::Status::at_rest;
+  fluid.model = Model::papanastasiou;
+  fluid.creep = 2e-4;
+  synthetic::write(solid, folder / "solid");
+  synthetic::write(fluid, folder / "fluid");
+  return compare_runs(find_runs({folder}));
+}
+
+TEST_F(ComparisonTest, ACopyAHundredthAsLargeIsMeasuredAlike) {
+  const Comparison large = solid_and_fluid(folder / "large", 1.0),
+                   small = solid_and_fluid(folder / "small", 0.01);
+  EXPECT_NEAR(small.grain.length, 1e-5, 1e-18);
+  EXPECT_DOUBLE_EQ(small.thresholds.time_unit, 0.1);
+  ASSERT_EQ(small.runs.size(), 2u);
+  ASSERT_EQ(small.times.size(), large.times.size());
+  ASSERT_EQ(small.stops.size(), large.stops.size());
+  ASSERT_EQ(small.grid.size(), large.grid.size());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Measures &a = small.runs[i].measures, &b = large.runs[i].measures;
+    const auto same = [&](const char* what, const std::optional<double>& mine,
+                          const std::optional<double>& other, double scale) {
+      ASSERT_EQ(mine.has_value(), other.has_value()) << what;
+      if (!mine) return;
+      EXPECT_NEAR(*mine, scale * *other, 1e-6 * std::abs(scale * *other) + 1e-12) << what;
+    };
+    constexpr double length = 0.01, time = 0.1, speed = 0.1;
+    same("spread", a.gauge_end, b.gauge_end, length);
+    same("at half", a.spread_at_half, b.spread_at_half, length);
+    same("at twice", a.spread_at_twice, b.spread_at_twice, length);
+    same("centre", a.centre_depth, b.centre_depth, length);
+    same("uncertainty", a.uncertainty, b.uncertainty, length);
+    same("rest by shear rate", a.rest_by_shear_rate, b.rest_by_shear_rate, time);
+    // Rounding decides which rows a window ends at: a row of the history.
+    ASSERT_EQ(a.rest_by_spread_rate.has_value(), b.rest_by_spread_rate.has_value());
+    if (a.rest_by_spread_rate) {
+      EXPECT_NEAR(*a.rest_by_spread_rate, time * *b.rest_by_spread_rate, 0.0051);
+    }
+    same("residual", a.residual, b.residual, speed);
+    same("creep", a.predicted_creep, b.predicted_creep, speed);
+    same("lowest stop", a.stop_lowest, b.stop_lowest, length);
+    EXPECT_EQ(a.cause, b.cause);
+    EXPECT_EQ(a.overshoot.size(), b.overshoot.size());
+  }
+  EXPECT_THAT(text(large),
+              HasSubstr("MPM elasto-viscoplastic comes to rest after 20 s with a spread of 576 ± 10 mm"));
+  EXPECT_THAT(text(small),
+              HasSubstr("MPM elasto-viscoplastic comes to rest after 2.0 s with a spread of 5.76 ± 0.10 mm"));
+  EXPECT_THAT(text(large), HasSubstr("growing by 0.20 mm/s"));
+  EXPECT_THAT(text(small), HasSubstr("growing by 0.020 mm/s"));
+  const auto json = to_json(small);
+  EXPECT_NEAR(json["thresholds"]["spread_depth_mm"].get<double>(), 0.03, 1e-15);
+  EXPECT_NEAR(json["thresholds"]["rest_spread_rate_mm_s"].get<double>(), 0.05, 1e-12);
+  write_comparison(small, folder / "report");
+  const std::string page = runs_text(folder / "report" / "index.html");
+  EXPECT_THAT(page, HasSubstr("falls through 0.03 mm"));
+  EXPECT_THAT(page, HasSubstr("at 0.015 mm depth"));
+}
+
+TEST_F(ComparisonTest, RunsWithoutTheKeyAreReadAtThreeMillimetresAndADifferenceIsNoted) {
+  write_arrested();
+  synthetic::Slump other;
+  other.model = Model::papanastasiou;
+  other.set = {"gauges.spread_depth=0.006"};
+  synthetic::write(other, folder / "other");
+  EXPECT_THAT(compared().notes,
+              testing::Contains(HasSubstr("not read at the same depth: 3 mm in MPM "
+                                          "elasto-viscoplastic; 6 mm in MPM papanastasiou")));
+  // A run of before, whose settings have no gauges.
+  auto info = nlohmann::ordered_json::parse(runs_text(folder / "evp" / "run.json"));
+  info["settings"].erase("gauges");
+  info.erase("gauges");
+  runs::write_atomically(folder / "evp" / "run.json", info.dump());
+  const Comparison comparison = compare_runs({folder / "evp"});
+  EXPECT_EQ(comparison.gauges, scenes::Gauges{});
+  EXPECT_THAT(comparison.notes, testing::IsEmpty());
+}
+
+TEST_F(ComparisonTest, AGaugeThatReadsNothingAtTheEndIsNeverZeroAndNeverAnOldReading) {
+  write_arrested();
+  synthetic::write(creeping(1e-4), folder / "fluid");
+  const auto table = runs::read_run(folder / "evp").history;
+  std::string csv = "time_s,spread_mm,height_mm,volume_m3,shear_rate_p99_1_s\n";
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    csv += fmt::format("{},{},{},{},{}\n", table.columns[0][i],
+                       i + 5 < table.rows() ? fmt::format("{}", table.columns[1][i]) : "",
+                       table.columns[2][i], table.columns[3][i], table.columns[4][i]);
+  runs::write_atomically(folder / "evp" / "history.csv", csv);
+  const Comparison comparison = compared();
+  const RunView& view = run(comparison, "MPM elasto-viscoplastic");
+  EXPECT_FALSE(view.measures.gauge_end);
+  EXPECT_FALSE(view.measures.readings.at("spread_mm").value);
+  EXPECT_FALSE(view.measures.residual);
+  EXPECT_FALSE(view.gauge_at(20.0)) << "what stood earlier does not stand for what cannot be read";
+  EXPECT_TRUE(view.gauge_at(10.0));
+  EXPECT_FALSE(run(comparison, "MPM papanastasiou").measures.overshoot_reference);
+  EXPECT_THAT(text(comparison), HasSubstr("with a spread of nothing that can be read (nowhere 3 mm deep)"));
+  EXPECT_THAT(
+      comparison.notes,
+      testing::Contains("Nothing is read of the spread at the end of MPM elasto-viscoplastic (nowhere 3 mm "
+                        "deep)."));
+  const auto json = to_json(comparison);
+  EXPECT_TRUE(json["runs"][0]["measures"]["spread_end_mm"].is_null());
+  write_comparison(comparison, folder / "report");
+}
+
+TEST(Words, HaveDigitsThatSuitTheBody) {
+  const words::Grain small =
+      words::grain_of({.spread_depth = 3e-5, .still_speed = 1e-5, .rate_window = 0.2}, scenes::Kind::slump);
+  EXPECT_EQ(words::spread(0.005419, small), "5.42 mm");
+  EXPECT_EQ(words::spread(0.005419, 0.0002, small), "5.4 ± 0.2 mm");
+  EXPECT_EQ(words::spread(0.005419, 1e-9, small), "5.42 ± 0.01 mm");
+  EXPECT_EQ(words::reading(5.419, std::nullopt, "mm", small), "5.42 mm");
+  EXPECT_EQ(words::reading(0.1234, 0.0042, "s", small), "0.123 ± 0.004 s");
+  EXPECT_EQ(words::speed(2e-7, small), "0.0002 mm/s");
+  EXPECT_EQ(words::speed(2e-8, small), "less than 0.0001 mm/s");
+  EXPECT_EQ(words::time(0.0512), "0.051 s");
+  EXPECT_EQ(words::decimals_down_to(5.3), 0);
+  EXPECT_EQ(words::decimals_down_to(0.053), 2);
+  // 0.6 mm, as of a mini-cone: told to a tenth of a millimetre.
+  EXPECT_EQ(words::spread(0.2313, words::grain_of({.spread_depth = 6e-4}, scenes::Kind::slump)), "231.3 mm");
 }
 
 TEST(Words, CarryNoMoreDigitsThanTheyShould) {

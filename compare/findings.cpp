@@ -21,7 +21,11 @@ std::string capitalised(std::string text) {
 }
 
 std::string end_of(const Comparison& comparison, const RunView& view) {
-  return words::of(gauge_of(comparison.kind), *view.measures.gauge_end, view.measures.uncertainty);
+  const auto& end = view.measures.gauge_end;
+  if (!end)
+    return fmt::format("nothing that can be read (nowhere {:g} mm deep)",
+                       1e3 * view.gauges.edge_depth(comparison.kind));
+  return words::of(gauge_of(comparison.kind), *end, view.measures.uncertainty, comparison.grain);
 }
 
 /// What is known of the difference between two runs; a run without an uncertainty adds none.
@@ -30,11 +34,12 @@ double uncertainty_of(const RunView& run, const RunView& reference) {
 }
 
 /// "62 ± 14 mm wider", or that the two cannot be told apart.
-std::string difference_in(const Gauge& gauge, double value, double uncertainty) {
+std::string difference_in(const Comparison& comparison, double value, double uncertainty) {
+  const Gauge& gauge = gauge_of(comparison.kind);
   const bool known = gauge.unit == "mm" || uncertainty > 0.0;
   if (known && std::abs(value) <= uncertainty)
-    return fmt::format("level within {}", words::of(gauge, uncertainty));
-  return fmt::format("{} {}", words::of(gauge, std::abs(value), uncertainty),
+    return fmt::format("level within {}", words::of(gauge, uncertainty, std::nullopt, comparison.grain));
+  return fmt::format("{} {}", words::of(gauge, std::abs(value), uncertainty, comparison.grain),
                      value > 0.0 ? gauge.more : gauge.less);
 }
 
@@ -43,9 +48,9 @@ std::string noise_clause(const RunView& view) {
 }
 
 /// "still grows by 0.10 to 0.15 mm/s then": a thin film of the exact material.
-std::string approach_words(const Measures& m) {
+std::string approach_words(const Comparison& comparison, const Measures& m) {
   return fmt::format("still grows by {:.2g} to {} then", 1e3 * *m.approach_least,
-                     words::speed(*m.approach_most));
+                     words::speed(*m.approach_most, comparison.grain));
 }
 
 /// What an elasto-viscoplastic body came to.
@@ -53,9 +58,13 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
   const std::string& gauge = gauge_of(comparison.kind).name;
   const Measures& m = view.measures;
   const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
-  const std::string more = m.growth_to_come ? fmt::format(", with at most {:.0f} mm still to come",
-                                                          std::max(1.0, std::ceil(1e3 * *m.growth_to_come)))
-                                            : "";
+  const double finest = comparison.grain.length;
+  const std::string more =
+      m.growth_to_come
+          ? fmt::format(", with at most {} still to come",
+                        words::spread(finest * std::max(1.0, std::ceil(*m.growth_to_come / finest)),
+                                      comparison.grain))
+          : "";
   if (view.held)
     return fmt::format("{} comes to rest{} with a {} of {}{}{}.", view.label,
                        m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "", gauge,
@@ -65,11 +74,12 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
     return fmt::format("{} has all but stopped by {} and ends with a {} of {}{}.", view.label,
                        words::time(*rest), gauge, end_of(comparison, view), noise);
   const std::string exact =
-      m.approach_most ? fmt::format(", where a thin film of it {}", approach_words(m)) : "";
-  return fmt::format("{} has not come to rest by {}: its {} is {}{}{}{}.", view.label, words::time(*m.end),
-                     gauge, end_of(comparison, view),
-                     m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual)) : "", exact,
-                     noise);
+      m.approach_most ? fmt::format(", where a thin film of it {}", approach_words(comparison, m)) : "";
+  return fmt::format(
+      "{} has not come to rest by {}: its {} is {}{}{}{}.", view.label, words::time(*m.end), gauge,
+      end_of(comparison, view),
+      m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual, comparison.grain)) : "", exact,
+      noise);
 }
 
 /// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
@@ -78,26 +88,29 @@ std::string fluid_clause(const Comparison& comparison, const RunView& view) {
   const Measures& m = view.measures;
   std::string inner;
   const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : ", ") + part; };
-  if (m.overshoot_reference) {
+  if (m.overshoot_reference && m.gauge_end) {
     const double over = *m.gauge_end - *m.overshoot_reference;
-    add(std::abs(over) <= m.uncertainty.value_or(5e-4)
+    add(std::abs(over) <= m.uncertainty.value_or(0.5 * comparison.grain.length)
             ? fmt::format("level with the arrested {}", gauge.name)
-            : fmt::format("{} {} the arrested {}", words::of(gauge, std::abs(over), m.uncertainty),
+            : fmt::format("{} {} the arrested {}",
+                          words::of(gauge, std::abs(over), m.uncertainty, comparison.grain),
                           over > 0.0 ? "past" : "short of", gauge.name));
   }
   if (m.residual)
     add(fmt::format("{} by {}", *m.residual >= 0.0 ? "growing" : "shrinking",
-                    words::speed(std::abs(*m.residual))));
+                    words::speed(std::abs(*m.residual), comparison.grain)));
   return fmt::format("{} stands at {}{}{}{}", view.label, end_of(comparison, view), inner.empty() ? "" : " (",
                      inner, inner.empty() ? "" : noise_clause(view) + ")");
 }
 
 /// The fluids, those that end together in one sentence.
 std::vector<std::string> fluid_sentences(const Comparison& comparison) {
+  // Half a second in a minute.
+  const double rounding = round_step(comparison.end / 120.0);
   std::map<double, std::vector<std::string>> by_end;
   for (const RunView& view : comparison.runs)
     if (view.fluid && !view.gauge.empty())
-      by_end[std::round(2.0 * *view.measures.end) / 2.0].push_back(fluid_clause(comparison, view));
+      by_end[rounding * std::round(*view.measures.end / rounding)].push_back(fluid_clause(comparison, view));
   const bool newtonian = std::any_of(comparison.runs.begin(), comparison.runs.end(),
                                      [](const RunView& view) { return view.model == "newtonian"; });
   std::vector<std::string> sentences;
@@ -119,7 +132,7 @@ const Pair::At* last_gauged(const Pair& pair) {
 std::string cause_sentence(const Comparison& comparison) {
   std::vector<std::string> creep, approach, either, noise, unexplained;
   const auto speed = [&](double value) {
-    return grows_to_rest(comparison.kind) ? words::speed(value) : words::velocity(value);
+    return grows_to_rest(comparison.kind) ? words::speed(value, comparison.grain) : words::velocity(value);
   };
   for (const RunView& view : comparison.runs) {
     const Measures& m = view.measures;
@@ -129,7 +142,7 @@ std::string cause_sentence(const Comparison& comparison) {
     if (m.cause == Cause::creep) creep.push_back(part);
     if (m.cause == Cause::approaching_rest)
       approach.push_back(fmt::format("{} ({}; exact material {}, its creep {})", view.label,
-                                     speed(std::abs(*m.residual)), approach_words(m),
+                                     speed(std::abs(*m.residual)), approach_words(comparison, m),
                                      speed(*m.predicted_creep)));
     if (m.cause == Cause::creep_or_noise) either.push_back(part);
     if (m.cause == Cause::noise) noise.push_back(part);
@@ -140,7 +153,7 @@ std::string cause_sentence(const Comparison& comparison) {
     if (!parts.empty()) text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", what, listed(parts));
   };
   add(creep, fmt::format("What still moves is the creep of the regularisation, within a factor of {:.3g}",
-                         comparison.options.creep_factor));
+                         comparison.thresholds.creep_factor));
   add(approach, "What still moves is the exact material's own approach to rest, and creep");
   add(either, "Creep of the regularisation or noise, which cannot be told apart here");
   add(noise, "Noise of the numerics, beyond what the regularisation explains");
@@ -160,7 +173,7 @@ std::string split_sentence(const Comparison& comparison) {
     if (pair.kind == "law" && reference.fluid) continue;
     const std::string what =
         comparison.kind != scenes::Kind::duct
-            ? difference_in(gauge_of(comparison.kind), *at->gauge_difference, uncertainty_of(run, reference))
+            ? difference_in(comparison, *at->gauge_difference, uncertainty_of(run, reference))
             : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
                           *at->gauge_difference >= 0.0 ? "faster" : "slower");
     (pair.kind == "law" ? law : solver)
@@ -179,16 +192,18 @@ std::string edge_sentence(const Comparison& comparison) {
   std::vector<std::string> films;
   for (const RunView& view : comparison.runs) {
     const Measures& m = view.measures;
-    if (view.exact || !m.spread_1_5mm || !m.spread_6mm) continue;
-    if (!ends_in_film(comparison, *m.spread_1_5mm - *m.spread_6mm)) continue;
-    films.push_back(
-        fmt::format("{} ({:.0f} to {:.0f} mm)", view.label, 1e3 * *m.spread_6mm, 1e3 * *m.spread_1_5mm));
+    if (view.exact || !m.spread_at_half || !m.spread_at_twice) continue;
+    if (!ends_in_film(comparison, *m.spread_at_half - *m.spread_at_twice)) continue;
+    films.push_back(fmt::format("{} ({:.{}f} to {})", view.label, 1e3 * *m.spread_at_twice,
+                                comparison.grain.decimals(),
+                                words::spread(*m.spread_at_half, comparison.grain)));
   }
   return films.empty()
              ? ""
              : fmt::format(
-                   "The edge is a thin film, so that the spread depends on whether it is read at 6 mm or "
-                   "at 1.5 mm of depth: {}.",
+                   "The edge is a thin film, so that the spread depends on whether it is read at {:g} mm or "
+                   "at {:g} mm of depth: {}.",
+                   2000.0 * comparison.gauges.spread_depth, 500.0 * comparison.gauges.spread_depth,
                    listed(films));
 }
 
@@ -212,9 +227,10 @@ std::string square_sentence(const Comparison& comparison) {
   const Square::At& at = square.at.back();
   const Gauge& gauge = gauge_of(comparison.kind);
   const auto amount = [&](double value) {
-    return comparison.kind == scenes::Kind::duct ? words::velocity(value)
-                                                 : fmt::format("{}{:.0f} {}", value < 0.0 ? "−" : "",
-                                                               std::abs(gauge.shown * value), gauge.unit);
+    return comparison.kind == scenes::Kind::duct
+               ? words::velocity(value)
+               : fmt::format("{}{:.{}f} {}", value < 0.0 ? "−" : "", std::abs(gauge.shown * value),
+                             gauge.unit == "mm" ? comparison.grain.decimals() : 0, gauge.unit);
   };
   const auto walls = [&](const std::optional<std::size_t>& run) {
     return !comparison.runs[*run].walls_differ.empty();
@@ -246,10 +262,12 @@ std::string range_sentence(const Comparison& comparison) {
 }
 
 /// A reading of a run in words; nothing where it has none.
-std::optional<std::string> reading_of(const RunView& view, const std::string& quantity) {
+std::optional<std::string> reading_of(const Comparison& comparison, const RunView& view,
+                                      const std::string& quantity) {
   const auto found = view.measures.readings.find(quantity);
   if (found == view.measures.readings.end() || !found->second.value) return std::nullopt;
-  return words::reading(*found->second.value, found->second.uncertainty, reading_named(quantity).unit);
+  return words::reading(*found->second.value, found->second.uncertainty, reading_named(quantity).unit,
+                        comparison.grain);
 }
 
 /// When an event takes place in every run: "light is seen through the funnel after 1.4 s (MPM ...)".
@@ -258,7 +276,7 @@ std::string event_clause(const Comparison& comparison, const std::string& quanti
   std::vector<std::string> seen, dark;
   for (const RunView& view : comparison.runs) {
     if (view.exact) continue;
-    if (const auto light = reading_of(view, quantity))
+    if (const auto light = reading_of(comparison, view, quantity))
       seen.push_back(fmt::format("after {} ({})", *light, view.label));
     else if (view.trouble.empty())
       dark.push_back(view.label);
@@ -295,11 +313,11 @@ std::string opening_sentence(const Comparison& comparison) {
     const auto rest = m.rest_declared        ? m.rest_declared
                       : m.rest_by_shear_rate ? m.rest_by_shear_rate
                                              : m.rest_by_spread_rate;
-    const auto arrival = reading_of(*arrested, "arrival_s");
+    const auto arrival = reading_of(comparison, *arrested, "arrival_s");
     text = fmt::format("{}{} comes to rest{}", arrested->label,
                        arrival ? fmt::format(" reaches the end wall after {} and", *arrival) : "",
                        rest ? " after " + words::time(*rest) : "");
-    const auto height = reading_of(*arrested, "end_height_mm");
+    const auto height = reading_of(comparison, *arrested, "end_height_mm");
     text += arrival && height ? fmt::format(", {} high at the wall", *height)
                               : fmt::format(" with a {} of {}", gauge_of(comparison.kind).name,
                                             end_of(comparison, *arrested));
@@ -358,8 +376,8 @@ void tell(Comparison& comparison, Topic topic, std::string text) {
 std::string readings_sentence(const Comparison& comparison, const RunView& view) {
   const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
   if (comparison.kind == scenes::Kind::v_funnel) {
-    const auto light = reading_of(view, "light_s");
-    const auto rest = reading_of(view, "rest_s");
+    const auto light = reading_of(comparison, view, "light_s");
+    const auto rest = reading_of(comparison, view, "rest_s");
     std::string text = light ? fmt::format("{}: light is seen after {}", view.label, *light)
                              : fmt::format("{}: no light is seen", view.label);
     if (!view.gauge.empty())
@@ -368,7 +386,8 @@ std::string readings_sentence(const Comparison& comparison, const RunView& view)
     if (rest) text += fmt::format("; at rest after {}", *rest);
     return text + noise + ".";
   }
-  const auto arrival = reading_of(view, "arrival_s"), height = reading_of(view, "end_height_mm");
+  const auto arrival = reading_of(comparison, view, "arrival_s"),
+             height = reading_of(comparison, view, "end_height_mm");
   if (arrival)
     return fmt::format("{} reaches the end wall after {}{}{}.", view.label, *arrival,
                        height && comparison.kind == scenes::Kind::l_box
@@ -412,12 +431,12 @@ std::string events_apart(const Comparison& comparison, const std::string& quanti
         std::hypot(own->second.uncertainty.value_or(0.0), other->second.uncertainty.value_or(0.0));
     (pair.kind == "law" ? law : solver)
         .push_back(
-            std::abs(difference) <= std::max(known, 0.005)
+            std::abs(difference) <= std::max(known, comparison.grain.time)
                 ? fmt::format("{} {} as early in {} as in {}", event,
                               known > 0.0 ? fmt::format("within {:.2g} s", known) : std::string("about"),
                               run.label, reference.label)
                 : fmt::format("{} {} {} in {} than in {}", event,
-                              words::reading(std::abs(difference), known, "s"),
+                              words::reading(std::abs(difference), known, "s", comparison.grain),
                               difference > 0.0 ? "later" : "earlier", run.label, reference.label));
   }
   std::string text;
@@ -442,11 +461,13 @@ void describe_growth(Comparison& comparison) {
     if (view.gauge.empty()) continue;
     if (view.exact) {
       const Series height = column(view.run, "end_height_mm");
-      exact.push_back(fmt::format("{}{} ({})", words::spread(*view.measures.gauge_end),
-                                  !height.empty() && height.value.back() > 0.0
-                                      ? fmt::format(", {:.0f} mm high at the end", height.value.back())
-                                      : "",
-                                  view.label));
+      exact.push_back(
+          fmt::format("{}{} ({})", end_of(comparison, view),
+                      !height.empty() && height.value.back() > 0.0
+                          ? fmt::format(", {} high at the end",
+                                        words::spread(1e-3 * height.value.back(), comparison.grain))
+                          : "",
+                      view.label));
       continue;
     }
     if (comparison.kind != scenes::Kind::slump)

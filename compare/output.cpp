@@ -28,8 +28,9 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
     json["spread_end_mm"] = scaled(m.gauge_end, 1e3);
     json["spread_end_uncertainty_mm"] = scaled(m.uncertainty, 1e3);
     json["spread_end_uncertainty_source"] = m.uncertainty_source;
-    json["spread_end_at_1.5mm_mm"] = scaled(m.spread_1_5mm, 1e3);
-    json["spread_end_at_6mm_mm"] = scaled(m.spread_6mm, 1e3);
+    // By their names of the standard cone: at half and at twice the depth that `thresholds` has.
+    json["spread_end_at_1.5mm_mm"] = scaled(m.spread_at_half, 1e3);
+    json["spread_end_at_6mm_mm"] = scaled(m.spread_at_twice, 1e3);
     json["centre_end_mm"] = scaled(m.centre_depth, 1e3);
     json["rest_declared_s"] = scaled(m.rest_declared);
     json["growth_to_come_mm"] = scaled(m.growth_to_come, 1e3);
@@ -186,7 +187,7 @@ std::string measures_csv(const Json& json) {
 
 Json to_json(const Comparison& comparison) {
   const Gauge& gauge = gauge_of(comparison.kind);
-  const Options& o = comparison.options;
+  const Thresholds& o = comparison.thresholds;
   Json json = {{"format", "flowrest comparison"},
                {"format_version", 1},
                {"title", comparison.title},
@@ -201,8 +202,13 @@ Json to_json(const Comparison& comparison) {
                  {"rest_velocity_fraction", o.rest_velocity_fraction},
                  {"rate_window_s", o.rate_window},
                  {"residual_window_s", o.residual_window},
-                 {"creep_factor", o.creep_factor},
-                 {"spread_depth_mm", 3.0}}}};
+                 {"creep_factor", o.creep_factor}}}};
+  if (comparison.kind != scenes::Kind::duct) {
+    const char* depth = comparison.kind == scenes::Kind::slump      ? "spread_depth_mm"
+                        : comparison.kind == scenes::Kind::v_funnel ? "light_depth_mm"
+                                                                    : "front_depth_mm";
+    json["thresholds"][depth] = 1e3 * comparison.gauges.edge_depth(comparison.kind);
+  }
   const char* topics[] = {"opening", "stop", "apart", "cause", "cost", "context"};
   for (const Finding& finding : comparison.findings)
     json["findings"].push_back({{"topic", topics[static_cast<int>(finding.topic)]}, {"text", finding.text}});

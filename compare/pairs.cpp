@@ -14,7 +14,7 @@ std::string pair_kind(const RunView& run, const RunView& reference) {
 }  // namespace
 
 void compare_pairs(Comparison& comparison) {
-  const double floor = comparison.kind == scenes::Kind::duct ? 0.0 : 1e-5;
+  const double floor = comparison.kind == scenes::Kind::duct ? 0.0 : 0.01 * comparison.grain.length;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i)
     for (std::size_t j = 0; j < comparison.runs.size(); ++j) {
       const RunView& run = comparison.runs[i];

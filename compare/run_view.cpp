@@ -9,6 +9,7 @@
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
 #include "runs/depth.h"
+#include "runs/gauges.h"
 
 namespace flowrest::compare {
 
@@ -16,20 +17,29 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double spread_threshold = 0.003;  // m
-
 /// The scene's gauge: from the history, or made of the profiles where the history lacks it.
 Series gauge_series(const runs::Run& run, scenes::Kind kind) {
   const Gauge& gauge = gauge_of(kind);
   Series series = column(run, gauge.column, gauge.si);
-  if (!series.empty() || (kind != scenes::Kind::slump && kind != scenes::Kind::duct)) return series;
+  const double spread_depth = runs::gauges_of(run).spread_depth;
+  if (!series.empty() || run.history.has(gauge.column) ||
+      (kind != scenes::Kind::slump && kind != scenes::Kind::duct))
+    return series;
   for (const auto& profile : run.profiles) {
+    const double value = kind == scenes::Kind::slump
+                             ? runs::spread(profile.coordinate, profile.value, spread_depth)
+                             : *std::max_element(profile.value.begin(), profile.value.end());
+    if (!std::isfinite(value)) continue;
     series.time.push_back(profile.time);
-    series.value.push_back(kind == scenes::Kind::slump
-                               ? runs::spread(profile.coordinate, profile.value, spread_threshold)
-                               : *std::max_element(profile.value.begin(), profile.value.end()));
+    series.value.push_back(value);
   }
   return series;
+}
+
+/// Whether the last row of the history has the gauge, and it reads nothing.
+bool ends_unread(const runs::Run& run, scenes::Kind kind) {
+  const std::string& name = gauge_of(kind).column;
+  return run.history.has(name) && run.history.rows() > 0 && std::isnan(run.history.at(name).back());
 }
 
 /// Duct profiles are compared about the mid-plane; solvers may count y from the lower plate.
@@ -141,7 +151,9 @@ RunView view_of(runs::Run run, scenes::Kind kind) {
     view.noise = colon == std::string::npos ? "no reason given" : verdict.substr(colon + 2);
   }
   if (kind == scenes::Kind::duct) centre_duct_profiles(view.run);
+  view.gauges = runs::gauges_of(view.run);
   view.gauge = gauge_series(view.run, kind);
+  view.unread = ends_unread(view.run, kind);
   view.walls_differ = word(info, "/walls_differ");
   view.shear_rate = column(view.run, "shear_rate_p99_1_s");
   view.trouble = trouble_of(view);
@@ -220,6 +232,28 @@ void check_same_scene(Comparison& comparison) {
   comparison.notes.push_back("These runs are not of the same physical scene: they differ in " + keys + ".");
 }
 
+void note_gauges(Comparison& comparison) {
+  if (comparison.kind == scenes::Kind::duct) return;
+  const auto depth_of = [&](const RunView& view) { return view.gauges.edge_depth(comparison.kind); };
+  std::map<double, std::vector<std::string>> by_depth;
+  std::vector<std::string> unread;
+  for (const RunView& view : comparison.runs) {
+    by_depth[depth_of(view)].push_back(view.label);
+    if (view.unread)
+      unread.push_back(fmt::format("{} (nowhere {:g} mm deep)", view.label, 1e3 * depth_of(view)));
+  }
+  if (by_depth.size() > 1) {
+    std::vector<std::string> depths;
+    for (const auto& [depth, labels] : by_depth)
+      depths.push_back(fmt::format("{:g} mm in {}", 1e3 * depth, words::listed(labels)));
+    comparison.notes.push_back(fmt::format("The gauges of these runs are not read at the same depth: {}.",
+                                           words::listed(depths, "; ")));
+  }
+  if (!unread.empty())
+    comparison.notes.push_back(fmt::format("Nothing is read of the {} at the end of {}.",
+                                           gauge_of(comparison.kind).name, words::listed(unread)));
+}
+
 std::string command_for(const Comparison& comparison, const std::string& solver, const std::string& model) {
   const std::string scene = word(comparison.runs.front().run.info, "/scene_name");
   return fmt::format("flowrest {} {}{}", solver, scene.empty() ? "SCENE" : scene,
@@ -256,7 +290,7 @@ void note_walls(Comparison& comparison) {
 
 std::optional<double> RunView::gauge_at(double time) const {
   if (gauge.empty()) return std::nullopt;
-  if (!exact && (time < gauge.time.front() - 1e-9 || (!held && time > gauge.end() + 1e-9)))
+  if (!exact && (time < gauge.time.front() - 1e-9 || ((!held || unread) && time > gauge.end() + 1e-9)))
     return std::nullopt;
   if (exact && run.info["kind"] == "duct") {
     // Each row is the steady state of the stage that ends there.

@@ -33,6 +33,10 @@ void make_labels_unique(std::vector<RunView>&);
 /// solvers.
 void check_same_scene(Comparison&);
 
+/// Notes the runs whose gauge is read at another depth than the first one's, and those that end with nothing
+/// to read of it.
+void note_gauges(Comparison&);
+
 /// Notes the runs that the scene names and that are not among these, each with the command that makes it.
 void note_missing(Comparison&);
 

@@ -13,8 +13,9 @@ namespace flowrest::compare {
 
 namespace {
 
-constexpr double scatter_window =
-    0.5;  // s, over which a run's scatter is taken: short, for a collapse is no straight line
+/// Over which a run's scatter is taken, as a share of the time over which growth is: short, for a collapse is
+/// no straight line.
+constexpr double scatter_over_rate_window = 0.25;
 
 /// The first run of a solver and model that has a gauge.
 std::optional<std::size_t> corner(const Comparison& comparison, const std::string& solver,
@@ -45,9 +46,9 @@ std::string common_fluid(const Comparison& comparison) {
 /// two ways to read the edge.
 double noise_of(const Comparison& comparison, const RunView& view, double time) {
   double noise = 0.0;
+  const double half = 0.5 * scatter_over_rate_window * comparison.thresholds.rate_window;
   if (time < view.gauge.end())
-    if (const auto line = trend(view.gauge, time - 0.5 * scatter_window, time + 0.5 * scatter_window))
-      noise = line->scatter;
+    if (const auto line = trend(view.gauge, time - half, time + half)) noise = line->scatter;
   if (comparison.kind != scenes::Kind::slump) return noise;
   const Series thin = column(view.run, "spread_1p5_mm", 1e-3), thick = column(view.run, "spread_6_mm", 1e-3);
   if (thin.empty() || thick.empty()) return noise;

@@ -1,5 +1,7 @@
 #include "compare/synthetic_runs.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -15,21 +17,39 @@ double Slump::radius_at(double time) const {
 }
 
 void write(const Slump& slump, const std::filesystem::path& directory) {
+  const double length = slump.size, pace = std::sqrt(slump.size);  // of lengths; of times and speeds
   scenes::Overrides overrides;
   overrides.model = slump.model;
-  overrides.set = slump.set;
+  if (slump.size != 1.0) {
+    const auto base = scenes::load_scene("roussel-slump");
+    const auto& cone = base.slump();
+    for (const auto& [key, value] :
+         {std::pair{"geometry.cone_height", length * cone.cone_height},
+          {"geometry.cone_radius_top", length * cone.cone_radius_top},
+          {"geometry.cone_radius_bottom", length * cone.cone_radius_bottom},
+          {"geometry.domain_radius", length * cone.domain_radius},
+          {"geometry.domain_height", length * cone.domain_height},
+          {"mpm.cell", length * base.mpm.cell},
+          {"foam.cell", length * base.foam.cell},
+          {"material.yield_stress", length * base.material.yield_stress},
+          {"material.plastic_viscosity", length * pace * base.material.plastic_viscosity},
+          {"material.youngs_modulus", length * base.material.youngs_modulus},
+          {"material.regularisation_time", pace * *base.material.regularisation_time}})
+      overrides.set.push_back(fmt::format("{}={:.17g}", key, value));
+  }
+  overrides.set.insert(overrides.set.end(), slump.set.begin(), slump.set.end());
   const auto scene = scenes::load_scene("roussel-slump", overrides);
   runs::RunWriter writer(directory, scene, slump.solver);
   writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3", "shear_rate_p99_1_s"});
   const double volume = scene.slump().volume();
+  const auto height_of = [&](double radius) { return 15.0 * volume / (8.0 * pi * radius * radius); };
   const auto depth_at = [&](double time) {
-    const double radius = slump.radius_at(time);
-    const double height = 15.0 * volume / (8.0 * pi * radius * radius);
-    runs::RadialDepthAccumulator rings(slump.cell, 0.45);
+    const double radius = length * slump.radius_at(time);
+    runs::RadialDepthAccumulator rings(length * slump.cell, length * 0.45);
     constexpr int shells = 4000;
     for (int i = 0; i < shells; ++i) {
       const double width = radius / shells, r = (i + 0.5) * width;
-      rings.add(r, 2.0 * pi * r * width * height * std::sqrt(1.0 - r / radius));
+      rings.add(r, 2.0 * pi * r * width * height_of(radius) * std::sqrt(1.0 - r / radius));
     }
     return rings.depth();
   };
@@ -39,17 +59,17 @@ void write(const Slump& slump, const std::filesystem::path& directory) {
     const double radius = slump.radius_at(time);
     const double spread = 2.0 * radius + slump.noise * std::sin(37.0 * time);
     const double shear_rate = 20.0 / std::pow(1.0 + time / slump.rate, 3) + slump.creep / 0.05;
-    writer.history(std::vector{time, 1e3 * spread, 1e3 * 15.0 * volume / (8.0 * pi * radius * radius),
-                               volume * (1.0 - 1e-5 * time / slump.end), shear_rate});
+    writer.history(std::vector{pace * time, 1e3 * length * spread, 1e3 * height_of(length * radius),
+                               volume * (1.0 - 1e-5 * time / slump.end), shear_rate / pace});
     if (i % 5 == 0) {
       const auto depth = depth_at(time);
-      writer.profile(time, depth.centres(), depth.depth);
+      writer.profile(pace * time, depth.centres(), depth.depth);
     }
   }
   writer.info()["cpu_s"] = slump.cpu;
   writer.info()["wall_s"] = 0.6 * slump.cpu;
   writer.info()["steps"] = rows * 100;
-  if (slump.status == runs::Status::at_rest) writer.info()["rest_time_s"] = slump.end;
+  if (slump.status == runs::Status::at_rest) writer.info()["rest_time_s"] = pace * slump.end;
   writer.finish(slump.status, slump.reason, slump.verdict);
 }
 

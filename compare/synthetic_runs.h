@@ -14,6 +14,7 @@ namespace flowrest::compare::synthetic {
 struct Slump {
   std::string solver = "mpm";
   scenes::Model model = scenes::Model::elasto_viscoplastic;
+  double size = 1.0;  ///< of its lengths; its times and speeds go with the root. What follows is of size 1.
   double radius = 0.288;  ///< m, approached
   double rate = 0.4;      ///< s: R = radius - (radius - 0.1)/(1 + t/rate)^2 + creep t/2
   double creep = 0.0;     ///< m/s, of the spread

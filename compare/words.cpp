@@ -16,50 +16,77 @@ std::string significant(double value, int digits) {
   return fmt::format("{:.{}f}", value, std::max(0, digits - before));
 }
 
+/// Decimals of a number whose last digit stands where this one has its first.
+int decimals_of(double place) { return std::max(0, -static_cast<int>(std::floor(std::log10(place) + 1e-9))); }
+
 }  // namespace
 
-std::string spread(double metres) { return fmt::format("{:.0f} mm", 1000.0 * metres); }
-
-std::string spread(double metres, const std::optional<double>& uncertainty) {
-  if (!uncertainty || !(*uncertainty > 0.0)) return spread(metres);
-  // One digit of the uncertainty, two where it begins with 1, never below a millimetre; the value ends at the
-  // same place.
-  const double mm = std::max(1000.0 * *uncertainty, 1.0);
-  const double leading = std::pow(10.0, std::floor(std::log10(mm)));
-  const double place = std::max(mm < 1.95 * leading ? 0.1 * leading : leading, 1.0);
-  return fmt::format("{:.0f} ± {:.0f} mm", place * std::round(1000.0 * metres / place),
-                     place * std::round(mm / place));
+Grain grain_of(const scenes::Gauges& gauges, scenes::Kind kind) {
+  const scenes::Gauges standard;
+  // What falls a little short of a power of ten counts as it.
+  const auto power_of_ten = [](double most) { return std::pow(10.0, std::floor(std::log10(most) + 0.05)); };
+  Grain grain;
+  grain.length = power_of_ten(gauges.edge_depth(kind) / 3.0);
+  grain.speed = power_of_ten(gauges.still_speed / 100.0);
+  grain.time *= gauges.rate_window / standard.rate_window;
+  return grain;
 }
 
-std::string reading(double value, const std::optional<double>& uncertainty, const std::string& unit) {
+int Grain::decimals() const { return decimals_of(1e3 * length); }
+
+int decimals_down_to(double uncertainty) { return uncertainty > 0.0 ? decimals_of(uncertainty) : 0; }
+
+std::string spread(double metres, const Grain& grain) {
+  return fmt::format("{:.{}f} mm", 1000.0 * metres, grain.decimals());
+}
+
+std::string spread(double metres, const std::optional<double>& uncertainty, const Grain& grain) {
+  if (!uncertainty || !(*uncertainty > 0.0)) return spread(metres, grain);
+  // One digit of the uncertainty, two where it begins with 1, never below the grain; the value ends at the
+  // same place.
+  const double finest = 1000.0 * grain.length;
+  const double mm = std::max(1000.0 * *uncertainty, finest);
+  const double leading = std::pow(10.0, std::floor(std::log10(mm)));
+  const double place = std::max(mm < 1.95 * leading ? 0.1 * leading : leading, finest);
+  const int decimals = decimals_of(place);
+  return fmt::format("{:.{}f} ± {:.{}f} mm", place * std::round(1000.0 * metres / place), decimals,
+                     place * std::round(mm / place), decimals);
+}
+
+std::string reading(double value, const std::optional<double>& uncertainty, const std::string& unit,
+                    const Grain& grain) {
   const std::string after = unit.empty() ? "" : " " + unit;
   if (!uncertainty || !(*uncertainty > 0.0) || !std::isfinite(*uncertainty))
-    return unit == "mm" ? fmt::format("{:.0f}{}", value, after)
+    return unit == "mm" ? fmt::format("{:.{}f}{}", value, grain.decimals(), after)
                         : significant(value, unit == "s" ? 2 : 3) + after;
   // One digit of the uncertainty, two where it begins with 1; the value ends at the same place.
   const double leading = std::pow(10.0, std::floor(std::log10(*uncertainty)));
-  const double least = unit == "mm" ? 1.0 : unit == "s" ? 0.01 : 0.0;
+  const double least = unit == "mm"  ? 1000.0 * grain.length
+                       : unit == "s" ? std::pow(10.0, std::floor(std::log10(2.0 * grain.time) + 1e-9))
+                                     : 0.0;
   const double place = std::max(*uncertainty < 1.95 * leading ? 0.1 * leading : leading, least);
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(place) + 1e-9)));
+  const int decimals = decimals_of(place);
   return fmt::format("{:.{}f} ± {:.{}f}{}", place * std::round(value / place), decimals,
                      place * std::max(1.0, std::round(*uncertainty / place)), decimals, after);
 }
 
-std::string of(const Gauge& gauge, double value, const std::optional<double>& uncertainty) {
-  if (gauge.unit == "mm") return spread(value, uncertainty);
+std::string of(const Gauge& gauge, double value, const std::optional<double>& uncertainty,
+               const Grain& grain) {
+  if (gauge.unit == "mm") return spread(value, uncertainty, grain);
   if (gauge.unit == "m/s") return velocity(value);
   const auto shown = uncertainty ? std::optional(gauge.shown * *uncertainty) : std::nullopt;
-  return reading(gauge.shown * value, shown, gauge.unit);
+  return reading(gauge.shown * value, shown, gauge.unit, grain);
 }
 
 std::string time(double seconds) {
+  if (seconds > 0.0 && seconds < 0.95) return fmt::format("{:.2g} s", seconds);
   return seconds < 9.95 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.0f} s", seconds);
 }
 
-std::string speed(double m_per_s) {
-  const double mm = 1000.0 * m_per_s;
-  if (std::abs(mm) < 1e-3) return "less than 0.001 mm/s";
-  return significant(mm, std::abs(mm) < 0.01 ? 1 : 2) + " mm/s";
+std::string speed(double m_per_s, const Grain& grain) {
+  const double mm = 1000.0 * m_per_s, least = 1000.0 * grain.speed;
+  if (std::abs(mm) < least) return fmt::format("less than {:g} mm/s", least);
+  return significant(mm, std::abs(mm) < 10.0 * least ? 1 : 2) + " mm/s";
 }
 
 std::string velocity(double m_per_s) {

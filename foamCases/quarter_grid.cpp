@@ -97,7 +97,7 @@ double front(const QuarterGrid& grid, const std::vector<double>& fraction) {
     const double share = outer < inner ? (inner - half_full) / (inner - outer) : 0.0;
     return 2.0 * (grid.centre(i) + share * grid.width);
   }
-  return 0.0;
+  return runs::nothing;
 }
 
 }  // namespace
@@ -204,7 +204,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
   gauges.trapped_air = trapped_air(grid, fields.fraction);
   gauges.front = front(grid, fields.fraction);
   gauges.shear_rate_p99 = percentile_99(std::move(inside));
-  if (!slip) gauges.base_shear_rate_p99 = percentile_99(std::move(at_base));
+  gauges.base_shear_rate_p99 = slip ? 0.0 : percentile_99(std::move(at_base));
   return gauges;
 }
 

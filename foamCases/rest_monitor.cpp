@@ -34,8 +34,9 @@ RestMonitor::RestMonitor(const scenes::Scene& scene)
 void RestMonitor::add(double time, double shear_rate) {
   if (!can_rest_) return;
   time_ = time;
-  growth_ = growth_per_rate_ * shear_rate;
-  if (!(*growth_ < bound_)) {
+  growth_.reset();
+  if (!std::isnan(shear_rate)) growth_ = growth_per_rate_ * shear_rate;
+  if (!growth_ || !(*growth_ < bound_)) {
     calm_since_.reset();
   } else if (!calm_since_) {
     calm_since_ = time;

@@ -15,12 +15,14 @@ class RestMonitor {
  public:
   explicit RestMonitor(const scenes::Scene&);
 
-  /// `shear_rate` is the largest that counts, at the base or inside, 1/s.
+  /// `shear_rate` is the largest that counts, at the base or inside, 1/s; `runs::nothing` where there is none
+  /// to read, which is no rest.
   void add(double time, double shear_rate);
   /// Back to where a run is gone on with.
   void restart() { calm_since_.reset(); }
 
-  /// Relative growth still to come at most; nothing for a fluid, which always has some to come.
+  /// Relative growth still to come at most; nothing for a fluid, which always has some to come, and
+  /// where no shear rate is read.
   std::optional<double> growth_to_come() const { return growth_; }
   /// Since when, where the bound has held long enough to be believed. s
   std::optional<double> rest_time() const;

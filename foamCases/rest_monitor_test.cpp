@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "foamCases/test_scene.h"
+#include "runs/depth.h"
 
 namespace flowrest::foam {
 namespace {
@@ -31,6 +32,16 @@ TEST(RestMonitor, BelievesInRestOnlyOnceItHasLasted) {
   EXPECT_EQ(monitor.rest_time(), 20.0);
   monitor.add(20.7, 0.1);
   EXPECT_FALSE(monitor.at_rest());
+}
+
+TEST(RestMonitor, AShearRateThatCannotBeReadIsNoRest) {
+  RestMonitor monitor(roussel_slump("elasto-viscoplastic"));
+  for (const double time : {10.0, 20.0, 30.0}) monitor.add(time, runs::nothing);
+  EXPECT_FALSE(monitor.rest_time());
+  EXPECT_FALSE(monitor.growth_to_come());
+  monitor.add(40.0, 0.0);
+  monitor.add(50.0, 0.0);
+  EXPECT_EQ(monitor.rest_time(), 40.0);
 }
 
 TEST(RestMonitor, AFluidNeverRestsAndASceneMayGoOn) {

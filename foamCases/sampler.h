@@ -38,7 +38,8 @@ class Sampler {
   virtual std::size_t cells() const = 0;
   /// The state in a few words, for progress.
   virtual std::string progress() const = 0;
-  /// The largest shear rate at the base or inside, 1/s, of the last sample: what still moves the concrete.
+  /// The largest shear rate at the base or inside, 1/s, of the last sample: what still moves the concrete;
+  /// `runs::nothing` where no cell is full enough to tell, which is no rest.
   virtual double shear_rate() const = 0;
   /// Why the run can give no answer any more; empty where it can.
   virtual std::string fault() const = 0;

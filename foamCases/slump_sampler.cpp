@@ -6,14 +6,9 @@
 #include <utility>
 
 #include "runs/depth.h"
+#include "runs/gauges.h"
 
 namespace flowrest::foam {
-
-namespace {
-
-constexpr double rim_depth_bound = 3e-3;  // m, the depth at which the spread is read
-
-}  // namespace
 
 SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
                            bool plug_in)
@@ -36,9 +31,10 @@ void SlumpSampler::sample(double time, const ReadField& read) {
   const auto gauges = mesh_->gauge(fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   conservation_.add(time, gauges.volume, gauges.kinetic_energy);
   state_.time = time;
-  state_.spread = runs::spread(gauges.radius, gauges.depth);
+  const double spread_depth = scene().gauges.spread_depth;
+  state_.spread = runs::spread(gauges.radius, gauges.depth, spread_depth);
   state_.front = gauges.front;
-  state_.height = runs::centre_depth(gauges.radius, gauges.depth);
+  state_.height = runs::centre_depth(gauges.radius, gauges.depth, spread_depth);
   state_.rim_depth = gauges.rim_depth;
   state_.shear_rate = gauges.shear_rate_p99;
   state_.base_shear_rate = gauges.base_shear_rate_p99;
@@ -49,13 +45,13 @@ void SlumpSampler::sample(double time, const ReadField& read) {
 }
 
 void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
-  const auto spread_mm = [&](double threshold) {
-    return 1e3 * runs::spread(gauges.radius, gauges.depth, threshold);
+  const auto spread_mm = [&](double times) {
+    return 1e3 * runs::spread(gauges.radius, gauges.depth, times * scene().gauges.spread_depth);
   };
   std::vector<double> row{time,
-                          spread_mm(0.003),
-                          spread_mm(0.0015),
-                          spread_mm(0.006),
+                          1e3 * state_.spread,
+                          spread_mm(0.5),
+                          spread_mm(2.0),
                           1e3 * gauges.front,
                           1e3 * state_.height,
                           gauges.volume,
@@ -68,10 +64,12 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
   writer().history(row);
 }
 
-std::string SlumpSampler::progress() const { return fmt::format("spread {:.1f} mm", 1e3 * state_.spread); }
+std::string SlumpSampler::progress() const {
+  return runs::shown_length("spread", state_.spread, scene().gauges.spread_depth);
+}
 
 std::string SlumpSampler::fault() const {
-  if (state_.rim_depth > rim_depth_bound)
+  if (state_.rim_depth > scene().gauges.spread_depth)
     return fmt::format(
         "the concrete reached the rim of the mesh at {:.4g} s: geometry.domain_radius = {:g} m must be "
         "larger",

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "foamCases/conservation.h"
@@ -9,10 +9,10 @@
 
 namespace flowrest::foam {
 
-/// The state of a slump when it was last sampled.
+/// The state of a slump when it was last sampled. What had nothing to read is `runs::nothing`.
 struct SlumpState {
   double time = 0.0;              ///< s
-  double spread = 0.0;            ///< m, at 3 mm depth
+  double spread = 0.0;            ///< m, at gauges.spread_depth
   double front = 0.0;             ///< m
   double height = 0.0;            ///< m, centre depth
   double rim_depth = 0.0;         ///< m
@@ -30,7 +30,11 @@ class SlumpSampler : public Sampler {
 
   std::size_t cells() const override { return mesh_->cells(); }
   std::string progress() const override;
-  double shear_rate() const override { return std::max(state_.shear_rate, state_.base_shear_rate); }
+  double shear_rate() const override {
+    // A base that slips shears nothing, whatever moves upon it.
+    const bool slips = scene().base.law == scenes::Wall::slip;
+    return slips ? state_.shear_rate : std::fmax(state_.shear_rate, state_.base_shear_rate);
+  }
   std::string fault() const override;
   std::string doubt() const override { return conservation_.doubt(); }
   void continue_from(const runs::Table& history) override;

@@ -40,7 +40,7 @@ struct Bins {
   double width;
 };
 
-/// The place that a share of what is in the bins does not pass, linearly within a bin.
+/// The place that a share of what is in the bins does not pass, linearly within a bin; nothing of empty bins.
 double quantile(const Bins& bins, double share) {
   double total = 0.0, below = 0.0;
   for (const double v : bins.value) total += v;
@@ -49,7 +49,7 @@ double quantile(const Bins& bins, double share) {
       return bins.width * (static_cast<double>(i) + (share * total - below) / bins.value[i]);
     below += bins.value[i];
   }
-  return 0.0;
+  return runs::nothing;
 }
 
 }  // namespace
@@ -57,10 +57,14 @@ double quantile(const Bins& bins, double share) {
 VesselGauge::VesselGauge(const scenes::Scene& scene)
     : scene_(scene), cells_(mesh_cells(vessel_mesh(scene))), factor_(whole_over_mesh(scene)) {}
 
+bool VesselGauge::floor_holds() const {
+  return scene_.base.law != scenes::Wall::slip && scene_.kind != scenes::Kind::v_funnel;
+}
+
 VesselGauges VesselGauge::measure(const VesselFields& fields) const {
   VesselGauges gauges;
   const double density = scene_.material.density;
-  const bool held = scene_.base.law != scenes::Wall::slip && scene_.kind != scenes::Kind::v_funnel;
+  const bool held = floor_holds();
   std::vector<std::pair<double, double>> inside, at_floor;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const MeshCell& cell = cells_[i];
@@ -72,11 +76,11 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
     if (fields.fraction[i] < nearly_full) continue;
     if (!fields.shear_rate.empty()) inside.emplace_back(fields.shear_rate[i], concrete);
     const double height = cell.high[2] - cell.low[2];
-    if (held && cell.low[2] < 1e-9)
+    if (held && cell.low[2] < 1e-6 * scene_.foam.cell)
       at_floor.emplace_back(std::hypot(u[0], u[1]) / (0.5 * height), cell.volume / height);
   }
   gauges.shear_rate_p99 = percentile_99(std::move(inside));
-  gauges.base_shear_rate_p99 = percentile_99(std::move(at_floor));
+  gauges.base_shear_rate_p99 = held ? percentile_99(std::move(at_floor)) : 0.0;
   if (scene_.kind == scenes::Kind::v_funnel) {
     measure_funnel(fields, gauges);
   } else {
@@ -96,10 +100,11 @@ void VesselGauge::measure_channel(const VesselFields& fields, VesselGauges& gaug
   gauges.place = volume.centres();
   gauges.depth = volume.value;
   for (double& depth : gauges.depth) depth /= volume.width * width;
-  gauges.front = runs::front(gauges.place, gauges.depth, length) - begin;
+  gauges.front = runs::front(gauges.place, gauges.depth, length, scene_.gauges.front_depth) - begin;
   gauges.front_mass_995 = quantile(volume, 0.995) - begin;
-  gauges.end_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::last);
-  gauges.start_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::first);
+  const double over = scene_.gauges.end_length;
+  gauges.end_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::last, over);
+  gauges.start_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::first, over);
 }
 
 void VesselGauge::measure_funnel(const VesselFields& fields, VesselGauges& gauges) const {

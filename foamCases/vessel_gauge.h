@@ -16,6 +16,7 @@ struct VesselFields {
   std::vector<double> shear_rate;  ///< 1/s; empty where nobody computes it
 };
 
+/// What has nothing to read is `runs::nothing`.
 struct VesselGauges {
   std::vector<double> place, depth;  ///< m, of equal bins along x (a funnel's: over half its width)
   double volume = 0.0;               ///< m3
@@ -40,6 +41,8 @@ class VesselGauge {
 
   std::size_t cells() const { return cells_.size(); }
   VesselGauges measure(const VesselFields&) const;
+  /// Whether there is a floor that shears what moves upon it; the floor under a funnel is not gauged.
+  bool floor_holds() const;
   /// Mean of a cell field over the concrete, by its volume.
   double mean_over_concrete(const std::vector<double>& fraction, const std::vector<double>& field) const;
 

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "foamCases/vessel_mesh.h"
+#include "runs/gauges.h"
 
 namespace flowrest::foam {
 
@@ -42,7 +43,10 @@ void VesselSampler::sample(double time, const ReadField& read) {
 
 double VesselSampler::discharged() const { return 1.0 - now_.over_outlet / conservation_.first_volume(); }
 
-double VesselSampler::shear_rate() const { return std::max(now_.shear_rate_p99, now_.base_shear_rate_p99); }
+double VesselSampler::shear_rate() const {
+  return gauge_.floor_holds() ? std::fmax(now_.shear_rate_p99, now_.base_shear_rate_p99)
+                              : now_.shear_rate_p99;
+}
 
 void VesselSampler::write_history(double time) {
   std::vector<double> row{time};
@@ -63,7 +67,7 @@ void VesselSampler::write_history(double time) {
 
 std::string VesselSampler::progress() const {
   return is_funnel() ? fmt::format("discharged {:.1f} %", 100.0 * discharged())
-                     : fmt::format("front {:.1f} mm", 1e3 * now_.front);
+                     : runs::shown_length("front", now_.front, scene().gauges.front_depth);
 }
 
 void VesselSampler::continue_from(const runs::Table& history) {

@@ -167,6 +167,30 @@ TEST(VesselGauge, SeesAWedgeInTheChannel) {
   EXPECT_EQ(gauges.place.size(), gauges.depth.size());
 }
 
+TEST(VesselGauge, ReadsTheFrontAndTheHeightsAsTheSceneDefinesThem) {
+  const auto scene = scene_of("mix-a-lbox-sf0", {"foam.cell=0.01", "geometry.rebars=0",
+                                                 "gauges.front_depth=0.012", "gauges.end_length=0.1"});
+  const VesselGauge gauge(scene);
+  const auto cells = mesh_cells(vessel_mesh(scene));
+  VesselFields fields, air;
+  const double height = 0.06, end = 0.5;  // m, falling linearly from the back wall
+  for (const auto& cell : cells) {
+    const double depth = height * std::max(0.0, 1.0 - cell.centre()[0] / end);
+    fields.fraction.push_back(std::clamp((depth - cell.low[2]) / (cell.high[2] - cell.low[2]), 0.0, 1.0));
+    air.fraction.push_back(0.0);
+  }
+  fields.velocity = air.velocity = std::vector<double>(3 * cells.size(), 0.0);
+  const auto gauges = gauge.measure(fields);
+  EXPECT_NEAR(gauges.front, end * (1.0 - 0.012 / height) - 0.1, 1e-4);
+  EXPECT_NEAR(gauges.start_height, height * (1.0 - 0.05 / end), 1e-10);
+  // Without concrete there is no front, and none at the back wall either.
+  const auto empty = gauge.measure(air);
+  EXPECT_TRUE(std::isnan(empty.front));
+  EXPECT_TRUE(std::isnan(empty.front_mass_995));
+  EXPECT_TRUE(std::isnan(empty.shear_rate_p99));
+  EXPECT_EQ(empty.end_height, 0.0);
+}
+
 TEST(VesselGauge, SeesWhatIsLeftInAFunnel) {
   const auto scene = scene_of("mix-a-vfunnel-sf0", {"foam.cell=0.01"});
   const VesselGauge gauge(scene);

@@ -67,7 +67,7 @@ double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction
     const double share = outer < inner ? (inner - half_full) / (inner - outer) : 0.0;
     return 2.0 * (grid.ring_centre(ring) + share * grid.ring_width);
   }
-  return 0.0;
+  return runs::nothing;
 }
 
 double concrete_shear_rate(const WedgeGrid& grid, const SlumpFields& fields, bool slip) {
@@ -105,7 +105,7 @@ double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
     below += weight;
     if (below >= 0.99 * total) return value;
   }
-  return 0.0;
+  return runs::nothing;
 }
 
 std::vector<double> shear_rate(const WedgeGrid& grid, const std::vector<double>& velocity, bool slip) {
@@ -148,7 +148,7 @@ SlumpGauges gauge_slump(const WedgeGrid& grid, const SlumpFields& fields, double
   gauges.rim_depth = gauges.depth.back();
   gauges.front = front_diameter(grid, fields.fraction);
   gauges.shear_rate_p99 = concrete_shear_rate(grid, fields, slip);
-  if (!slip) gauges.base_shear_rate_p99 = base_shear_rate(grid, fields);
+  gauges.base_shear_rate_p99 = slip ? 0.0 : base_shear_rate(grid, fields);
   return gauges;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foamCases/wedge_grid.h"
+#include "runs/depth.h"
 
 /// What is measured of a slump's fields on the wedge grid, scaled to the full circle.
 namespace flowrest::foam {
@@ -14,16 +15,18 @@ struct SlumpFields {
   std::vector<double> velocity;
 };
 
+/// What has nothing to read is `runs::nothing`.
 struct SlumpGauges {
-  std::vector<double> radius;   ///< m, ring centres
-  std::vector<double> depth;    ///< m, concrete volume per plan area of each ring
-  double volume = 0.0;          ///< m3, of concrete
-  double kinetic_energy = 0.0;  ///< J, of the concrete alone
-  double shear_rate_p99 =
-      0.0;  ///< 1/s, the 99th percentile by volume over cells at least 90 % full; 0 without any
+  std::vector<double> radius;             ///< m, ring centres
+  std::vector<double> depth;              ///< m, concrete volume per plan area of each ring
+  double volume = 0.0;                    ///< m3, of concrete
+  double kinetic_energy = 0.0;            ///< J, of the concrete alone
+  double shear_rate_p99 = runs::nothing;  ///< 1/s, the 99th percentile by volume over cells at least 90 %
+                                          ///< full; nothing without any
   double base_shear_rate_p99 =
-      0.0;             ///< 1/s, at the base, the 99th percentile by area under cells at least 90 % full
-  double front = 0.0;  ///< m, twice the radius at which the base row is half full; 0 where it nowhere is
+      runs::nothing;  ///< 1/s, at the base, the same by area under cells at least 90 % full; 0 where it slips
+  double front =
+      runs::nothing;  ///< m, twice the radius at which the base row is half full; nothing where it nowhere is
   double trapped_air = 0.0;  ///< m3, of air with fuller cells above it
   double rim_depth = 0.0;    ///< m, depth in the outermost ring
 };
@@ -35,7 +38,7 @@ SlumpGauges gauge_slump(const WedgeGrid&, const SlumpFields&, double density, bo
 double mean_over_concrete(const WedgeGrid&, const std::vector<double>& fraction,
                           const std::vector<double>& field);
 
-/// The value below which 99 % of the weight lies; 0 without any.
+/// The value below which 99 % of the weight lies; nothing without any.
 double percentile_99(std::vector<std::pair<double, double>> value_and_weight);
 
 /// Shear rate sqrt(2 D:D) in every cell, with faces interpolated linearly as the case's schemes do. 1/s

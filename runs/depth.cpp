@@ -69,19 +69,20 @@ double spread(std::span<const double> radius, std::span<const double> depth, dou
     const double fraction = (depth[i] - threshold) / (depth[i] - depth[i + 1]);
     return 2.0 * (radius[i] + fraction * (radius[i + 1] - radius[i]));
   }
-  return 0.0;
+  return nothing;
 }
 
-double front(std::span<const double> centre, std::span<const double> depth, double length) {
-  constexpr double front_depth = 0.003;
+double front(std::span<const double> centre, std::span<const double> depth, double length,
+             double front_depth) {
   if (!depth.empty() && depth.back() > front_depth) return length;
   for (std::size_t i = depth.size(); i-- > 1;)
     if (depth[i - 1] > front_depth)
       return std::lerp(centre[i - 1], centre[i], (depth[i - 1] - front_depth) / (depth[i - 1] - depth[i]));
-  return 0.0;
+  return nothing;
 }
 
 double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd end, double length) {
+  if (depth.empty()) return nothing;
   const auto bins =
       std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(length / bin_width)), 1, depth.size());
   double sum = 0.0;
@@ -89,12 +90,12 @@ double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd 
   return sum / static_cast<double>(bins);
 }
 
-double centre_depth(std::span<const double> radius, std::span<const double> depth) {
+double centre_depth(std::span<const double> radius, std::span<const double> depth, double spread_depth) {
   const std::size_t count = std::min(radius.size(), depth.size());
-  if (count == 0) return 0.0;
+  if (count == 0) return nothing;
   if (count == 1) return depth[0];
-  constexpr double usual_threshold = 0.003;
-  const double window = 0.25 * 0.5 * spread(radius, depth, usual_threshold);
+  // Without a spread there is no window, and the innermost two rings are taken.
+  const double window = 0.25 * 0.5 * spread(radius, depth, spread_depth);
   // Least squares of c + s r, rings counting by their area.
   double area = 0.0, first = 0.0, second = 0.0, value = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < count && (i < 2 || radius[i] <= window); ++i) {

@@ -79,9 +79,35 @@ TEST(Spread, IsLinearBetweenCentresAndTakesTheLastFall) {
   EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.010, 0.004, 0.002}, 0.003), 6.0);
   EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.001, 0.005, 0.001}, 0.003),
                    6.0);  // a detached ring counts
-  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.001, 0.001, 0.001, 0.001}, 0.003), 0.0);
+  EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.001, 0.001, 0.001, 0.001}, 0.0005), 7.0);
   EXPECT_DOUBLE_EQ(spread(radius, std::vector{0.010, 0.010, 0.010, 0.010}, 0.003), 7.0);
-  EXPECT_DOUBLE_EQ(spread({}, {}, 0.003), 0.0);
+}
+
+TEST(Gauges, ThatHaveNothingToReadGiveNothingAndNeverZero) {
+  const std::vector<double> place = {0.5, 1.5, 2.5}, thin = {0.002, 0.002, 0.001};
+  EXPECT_TRUE(std::isnan(spread(place, thin, 0.003)));
+  EXPECT_TRUE(std::isnan(spread({}, {}, 0.003)));
+  EXPECT_TRUE(std::isnan(front(place, thin, 3.0, 0.003)));
+  EXPECT_TRUE(std::isnan(front({}, {}, 3.0, 0.003)));
+  EXPECT_TRUE(std::isnan(centre_depth({}, {}, 0.003)));
+  EXPECT_TRUE(std::isnan(depth_at_end({}, 1.0, ChannelEnd::last, 1.0)));
+  // Where it is dry the depth is known: that is a reading.
+  EXPECT_EQ(depth_at_end(std::vector{1.0, 0.0}, 1.0, ChannelEnd::last, 1.0), 0.0);
+}
+
+TEST(Front, IsReadAtTheDepthItIsGiven) {
+  const std::vector<double> place = {0.5, 1.5, 2.5}, depth = {0.010, 0.004, 0.0};
+  EXPECT_DOUBLE_EQ(front(place, depth, 3.0, 0.003), 1.75);
+  EXPECT_DOUBLE_EQ(front(place, depth, 3.0, 0.001), 2.25);
+  EXPECT_DOUBLE_EQ(front(place, depth, 3.0, 0.007), 1.0);
+  EXPECT_DOUBLE_EQ(front(place, std::vector{0.0, 0.0, 0.01}, 3.0, 0.003), 3.0);
+}
+
+TEST(DepthAtEnd, IsTheMeanOverTheLengthItIsGiven) {
+  const std::vector<double> depth = {0.4, 0.2, 0.1, 0.3};
+  EXPECT_DOUBLE_EQ(depth_at_end(depth, 0.01, ChannelEnd::last, 0.02), 0.2);
+  EXPECT_DOUBLE_EQ(depth_at_end(depth, 0.01, ChannelEnd::first, 0.002), 0.4);
+  EXPECT_DOUBLE_EQ(depth_at_end(depth, 0.01, ChannelEnd::first, 1.0), 0.25);
 }
 
 TEST(CentreDepth, IsExactForAPlateauAndForALine) {
@@ -91,11 +117,10 @@ TEST(CentreDepth, IsExactForAPlateauAndForALine) {
     line.push_back(r < 0.3 ? 0.04 - 0.1 * r : 0.0);
     plateau.push_back(r < 0.1 ? 0.3 : r < 0.2 ? 0.1 : 0.0);
   }
-  EXPECT_NEAR(centre_depth(radius, line), 0.04, 1e-15);
-  EXPECT_NEAR(centre_depth(radius, plateau), 0.3, 1e-15);
-  EXPECT_NEAR(centre_depth(std::vector{0.1, 0.3}, std::vector{0.04, 0.02}), 0.05, 1e-15);
-  EXPECT_DOUBLE_EQ(centre_depth(std::vector{0.005}, std::vector{0.04}), 0.04);
-  EXPECT_DOUBLE_EQ(centre_depth({}, {}), 0.0);
+  EXPECT_NEAR(centre_depth(radius, line, 0.003), 0.04, 1e-15);
+  EXPECT_NEAR(centre_depth(radius, plateau, 0.003), 0.3, 1e-15);
+  EXPECT_NEAR(centre_depth(std::vector{0.1, 0.3}, std::vector{0.04, 0.02}, 0.003), 0.05, 1e-15);
+  EXPECT_DOUBLE_EQ(centre_depth(std::vector{0.005}, std::vector{0.04}, 0.003), 0.04);
 }
 
 TEST(CentreDepth, HardlyMindsTheInnermostRing) {
@@ -105,7 +130,7 @@ TEST(CentreDepth, HardlyMindsTheInnermostRing) {
     depth.push_back(r < 0.28 ? 0.04 - 0.1 * r : 0.0);
   }
   depth.front() += 0.004;
-  EXPECT_NEAR(centre_depth(radius, depth), 0.04, 0.002);
+  EXPECT_NEAR(centre_depth(radius, depth, 0.003), 0.04, 0.002);
 }
 
 TEST(CentreDepth, OfASampledParaboloidIsTakenForALineOverAQuarterOfItsRadius) {
@@ -113,7 +138,7 @@ TEST(CentreDepth, OfASampledParaboloidIsTakenForALineOverAQuarterOfItsRadius) {
   // high.
   for (const double spacing : {0.02, 0.01, 0.005}) {
     const auto depth = sampled_paraboloid(spacing, 0.04, 0.3, 60000);
-    EXPECT_NEAR(centre_depth(depth.centres(), depth.depth), 0.04 * (1.0 + 0.3 / 16.0), 4e-4)
+    EXPECT_NEAR(centre_depth(depth.centres(), depth.depth, 0.003), 0.04 * (1.0 + 0.3 / 16.0), 4e-4)
         << "spacing " << spacing;
   }
 }

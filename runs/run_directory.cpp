@@ -15,7 +15,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "runs/depth.h"
 #include "runs/folder.h"
+#include "runs/gauges.h"
 
 namespace flowrest::runs {
 
@@ -68,7 +70,8 @@ std::optional<Json> read_info(const fs::path& path, std::string& problem) {
   return info;
 }
 
-std::string number(double value) { return fmt::format("{:.17g}", value); }
+/// A number as CSV has it; what reads nothing is an empty cell.
+std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{:.17g}", value); }
 
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ",")); }
 
@@ -238,7 +241,8 @@ RunWriter::RunWriter(const fs::path& directory, const scenes::Scene& scene, cons
            {"provenance", provenance()},
            {"scene", scene.source},
            {"settings", Json::parse(scenes::resolved_json(scene))},
-           {"resolved_toml", scenes::resolved_toml(scene)}};
+           {"resolved_toml", scenes::resolved_toml(scene)},
+           {"gauges", gauge_definitions(scene)}};
   // First the new run.json: killed at any moment, the folder stays recognisable, can be gone on with and no
   // old status vouches for new data.
   write();
@@ -296,10 +300,8 @@ void RunWriter::history(std::span<const double> row) {
     throw std::invalid_argument(
         fmt::format("{} numbers for {} columns", row.size(), history_columns_.size()));
   std::string line;
-  for (const double value : row) {
-    if (!line.empty()) line += ',';
-    line += number(value);
-  }
+  for (const double value : row) line += number(value) + ',';
+  line.pop_back();
   line += '\n';
   append(history_, directory_ / "history.csv", line);
 }
@@ -363,7 +365,7 @@ Table read_csv(const fs::path& path, bool complete) {
       throw RunError(fmt::format("{}:{}: {} values where the header names {}", path.string(), i + 1,
                                  cells.size(), table.names.size()));
     for (std::size_t column = 0; column < cells.size(); ++column) {
-      const auto value = parsed(cells[column]);
+      const auto value = cells[column].empty() ? nothing : parsed(cells[column]);
       if (!value)
         throw RunError(fmt::format("{}:{}: '{}' in column {} is not a number", path.string(), i + 1,
                                    std::string(cells[column]), table.names[column]));

@@ -42,7 +42,8 @@ std::string to_string(Status);
 void write_atomically(const std::filesystem::path&, const std::string& text);
 
 /// Writes a run directory. CSV rows are appended and flushed as they come, so an interrupted run is readable;
-/// run.json is replaced atomically. Numbers are written with 17 significant digits.
+/// run.json is replaced atomically. Numbers are written with 17 significant digits; a gauge that
+/// reads nothing (`runs::nothing`) as an empty cell.
 class RunWriter {
  public:
   /// Creates `directory` and writes a first run.json with status "running". `solver` is "mpm", "foam" or
@@ -90,7 +91,8 @@ struct Table {
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 /// A last line that does not end in a newline was cut off by an interruption and is left out, unless
-/// `complete` says that whoever wrote the file came to the end of it.
+/// `complete` says that whoever wrote the file came to the end of it. An empty cell reads nothing
+/// (`runs::nothing`).
 /// @throws RunError with file:line of the first malformed row.
 Table read_csv(const std::filesystem::path&, bool complete = false);
 

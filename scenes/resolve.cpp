@@ -102,6 +102,12 @@ void resolve_particles(const Given& given, Draft& draft, Faults& faults) {
   }
 }
 
+void resolve_gauges(const Given& given, Scene& scene) {
+  const Gauges of_body = gauges_of_body(scene);
+  for (const auto& [name, gauge] : gauge_settings)
+    if (!given.gives(std::string("gauges.") + name)) scene.gauges.*gauge = of_body.*gauge;
+}
+
 }  // namespace
 
 void resolve(const Given& given, Draft& draft, Faults& faults) {
@@ -112,6 +118,7 @@ void resolve(const Given& given, Draft& draft, Faults& faults) {
   resolve_particles(given, draft, faults);
   resolve_critical_shear_rate(given, draft, faults);
   if (scene.mpm.scheme == Scheme::paper && !scene.mpm.time_step) scene.mpm.time_step = step_of_paper;
+  resolve_gauges(given, scene);
   if (!given.gives("foam.cell")) scene.foam.cell = scene.mpm.cell;
 }
 

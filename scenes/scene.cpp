@@ -21,6 +21,45 @@ double VFunnelGeometry::volume() const {
   return depth * (neck_height * outlet_width + taper_height * 0.5 * (outlet_width + top_width));
 }
 
+double Gauges::edge_depth(Kind kind) const {
+  switch (kind) {
+    case Kind::slump:
+      return spread_depth;
+    case Kind::l_box:
+    case Kind::dam_break:
+      return front_depth;
+    case Kind::v_funnel:
+      return light_depth;
+    case Kind::duct:
+      break;
+  }
+  return Gauges{}.spread_depth;
+}
+
+Gauges gauges_of_body(const Scene& scene) {
+  constexpr double standard_gravity = 9.81;  // m/s2
+  Gauges gauges;
+  if (scene.kind == Kind::duct) return gauges;
+  const double height = scene.body_height();
+  const bool slump = scene.kind == Kind::slump;
+  const double size = height / (slump ? 0.3 : 0.6);  // over the standard apparatus
+  const double time =
+      scene.forces.gravity > 0.0 ? std::sqrt(size * (standard_gravity / scene.forces.gravity)) : 1.0;
+  if (slump) {
+    gauges.spread_depth = height / 100.0;
+  } else {
+    gauges.front_depth = gauges.light_depth = height / 200.0;
+    gauges.end_length = height / 30.0;
+  }
+  // However odd a body is, they stay in the range of their keys.
+  const auto scaled = [](double value, double by) { return std::clamp(value * by, 1e-9, 1e3); };
+  gauges.rest_rate = scaled(gauges.rest_rate, size / time);
+  gauges.still_speed = scaled(gauges.still_speed, size / time);
+  gauges.rest_shear_rate = scaled(gauges.rest_shear_rate, 1.0 / time);
+  gauges.rate_window = scaled(gauges.rate_window, time);
+  return gauges;
+}
+
 double Scene::body_height() const {
   switch (kind) {
     case Kind::slump:

@@ -175,6 +175,33 @@ struct Output {
   bool operator==(const Output&) const = default;
 };
 
+/// What gauges are defined by. The values here are those of the standard apparatus (an Abrams cone; an L-box,
+/// a V-funnel and a tank of 600 mm); where a scene does not give them they scale with its body.
+struct Gauges {
+  double spread_depth = 0.003;    ///< m, of a slump where its spread is read
+  double front_depth = 0.003;     ///< m, of what runs along a channel where its front is read
+  double end_length = 0.02;       ///< m, of a channel's ends, over which the depth there is averaged
+  double light_depth = 0.003;     ///< m of material on a line of sight that still hides the light
+  double rest_rate = 5e-4;        ///< m/s: growth of spread or front that is customarily taken for rest
+  double still_speed = 1e-4;      ///< m/s: a law that can rest, and grows by less, has come to rest
+  double rest_shear_rate = 0.05;  ///< 1/s, customarily taken for rest
+  double rate_window = 2.0;       ///< s, over which growth is taken
+  /// The depth at which a kind's main gauge finds its edge, m; of a duct, which has none, the standard one.
+  double edge_depth(Kind) const;
+  bool operator==(const Gauges&) const = default;
+};
+
+/// What gauges are defined by, each under the name of its key.
+inline constexpr std::pair<const char*, double Gauges::*> gauge_settings[] = {
+    {"spread_depth", &Gauges::spread_depth},
+    {"front_depth", &Gauges::front_depth},
+    {"end_length", &Gauges::end_length},
+    {"light_depth", &Gauges::light_depth},
+    {"rest_rate", &Gauges::rest_rate},
+    {"still_speed", &Gauges::still_speed},
+    {"rest_shear_rate", &Gauges::rest_shear_rate},
+    {"rate_window", &Gauges::rate_window}};
+
 struct Mpm {
   Scheme scheme = Scheme::quadratic_apic;
   double cell = 0.0;  ///< m
@@ -243,6 +270,7 @@ struct Scene {
   Forces forces;
   Time time;
   Output output;
+  Gauges gauges;
   Mpm mpm;
   Foam foam;
 
@@ -258,6 +286,10 @@ struct Scene {
     return geometry.dimension == Dimension::axisymmetric || geometry.dimension == Dimension::plane ? 2 : 3;
   }
 };
+
+/// What gauges are defined by in a scene that does not say: lengths in proportion to the body's height,
+/// speeds to the root of height times gravity. A duct has the standard values.
+Gauges gauges_of_body(const Scene&);
 
 /// A scene that cannot be used. what() holds one line per fault: "file:line:column: what is wrong; what is
 /// allowed".

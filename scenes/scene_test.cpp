@@ -28,6 +28,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.forces, b.forces);
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.output, b.output);
+  EXPECT_EQ(a.gauges, b.gauges);
   EXPECT_EQ(a.mpm, b.mpm);
   EXPECT_EQ(a.foam, b.foam);
 }
@@ -80,6 +81,42 @@ TEST(Scene, ResolvesWhatIsNotGiven) {
   const Scene slump = parse_scene(replaced(slump_text, "gravity = 9.81\n", "\n"), "slump.toml");
   EXPECT_DOUBLE_EQ(slump.forces.gravity, 9.81);
   EXPECT_DOUBLE_EQ(slump.material.critical_shear_rate.value(), 0.01);
+}
+
+TEST(Scene, GaugesAreDefinedAsTheStandardApparatusHasThemAndScaleWithTheBody) {
+  for (const char* name : {"roussel-slump", "mix-a-lbox-sf0", "mix-a-vfunnel-sf0", "poiseuille-10"})
+    EXPECT_EQ(load_scene(name).gauges, Gauges{}) << name;
+
+  EXPECT_EQ(load_scene("dam-break").gauges.front_depth, 0.003);
+
+  // A hundredth as large: lengths a hundredth, times a tenth.
+  const Overrides small{{"geometry.cone_height=0.003", "geometry.cone_radius_top=0.0005",
+                         "geometry.cone_radius_bottom=0.001", "mpm.cell=0.0002", "foam.cell=0.0002"},
+                        {}};
+  const Gauges copy = parse_scene(slump_text, "s.toml", small).gauges;
+  EXPECT_DOUBLE_EQ(copy.spread_depth, 3e-5);
+  EXPECT_DOUBLE_EQ(copy.rest_rate, 5e-5);
+  EXPECT_DOUBLE_EQ(copy.still_speed, 1e-5);
+  EXPECT_DOUBLE_EQ(copy.rest_shear_rate, 0.5);
+  EXPECT_DOUBLE_EQ(copy.rate_window, 0.2);
+
+  const Gauges box = load_scene("mix-a-lbox-sf0", {{"geometry.reservoir_height=0.3"}, {}}).gauges;
+  EXPECT_DOUBLE_EQ(box.front_depth, 0.0015);
+  EXPECT_DOUBLE_EQ(box.end_length, 0.01);
+  const Gauges funnel =
+      load_scene("mix-a-vfunnel-sf0", {{"geometry.taper_height=0.2", "geometry.neck_height=0.1"}, {}}).gauges;
+  EXPECT_DOUBLE_EQ(funnel.light_depth, 0.0015);
+  const Gauges on_the_moon = parse_scene(slump_text, "s.toml", {{"forces.gravity=1.09"}, {}}).gauges;
+  EXPECT_DOUBLE_EQ(on_the_moon.spread_depth, 0.003);
+  EXPECT_DOUBLE_EQ(on_the_moon.rate_window, 6.0);
+  EXPECT_EQ(parse_scene(slump_text, "s.toml", {{"forces.gravity=0"}, {}}).gauges, Gauges{});
+}
+
+TEST(Scene, WhatGaugesAreDefinedByCanBeGiven) {
+  const Scene scene = parse_scene(slump_text, "s.toml", {{"gauges.spread_depth=0.005"}, {}});
+  EXPECT_DOUBLE_EQ(scene.gauges.spread_depth, 0.005);
+  EXPECT_DOUBLE_EQ(scene.gauges.rest_rate, 5e-4);
+  expect_round_trip(scene);
 }
 
 TEST(Scene, ANewtonianFluidNeedsNoYieldStress) {

@@ -215,6 +215,45 @@ std::vector<Key> output_keys() {
   };
 }
 
+std::vector<Key> gauge_keys() {
+  const std::vector<Kind> channels = {Kind::l_box, Kind::dam_break},
+                          growing = {Kind::slump, Kind::l_box, Kind::dam_break};
+  const auto length = [](const char* name, Access<double> at, const char* meaning, const char* fallback,
+                         const std::vector<Kind>& kinds) {
+    return number(std::string("gauges.") + name, "m", above(0.0, largest_length), at, meaning)
+        .otherwise(fallback)
+        .only_in(kinds);
+  };
+  return {
+      length("spread_depth", AT(draft.scene.gauges.spread_depth),
+             "depth at which the spread is read; spread_1p5_mm and spread_6_mm at half and at twice of it",
+             "cone_height / 100: 0.003 of an Abrams cone", {Kind::slump}),
+      length("front_depth", AT(draft.scene.gauges.front_depth), "depth at which the front is read",
+             "height of the body / 200: 0.003 of 0.6", channels),
+      length("end_length", AT(draft.scene.gauges.end_length),
+             "length at either end over which the depth there is averaged",
+             "height of the body / 30: 0.02 of 0.6", channels),
+      length("light_depth", AT(draft.scene.gauges.light_depth),
+             "material on a line of sight that still hides the light",
+             "height of the funnel / 200: 0.003 of 0.6", {Kind::v_funnel}),
+      number("gauges.rest_rate", "m/s", above(0.0, 1e3), AT(draft.scene.gauges.rest_rate),
+             "growth of spread or front that reports take for rest, as is customary")
+          .otherwise("5e-4 of the standard apparatus, with the root of height times gravity")
+          .only_in(growing),
+      number("gauges.still_speed", "m/s", above(0.0, 1e3), AT(draft.scene.gauges.still_speed),
+             "growth below which reports say of a law that can rest that it has come to rest")
+          .otherwise("1e-4 of the standard apparatus, with the root of height times gravity")
+          .only_in(growing),
+      number("gauges.rest_shear_rate", "1/s", above(0.0, largest_time),
+             AT(draft.scene.gauges.rest_shear_rate),
+             "99th percentile of the shear rate that reports take for rest, as is customary")
+          .otherwise("0.05 of the standard apparatus, with the root of gravity over height; 0.05 of a duct"),
+      number("gauges.rate_window", "s", above(0.0, largest_time), AT(draft.scene.gauges.rate_window),
+             "time over which reports take growth")
+          .otherwise("2 of the standard apparatus, with the root of height over gravity; 2 of a duct"),
+  };
+}
+
 std::vector<Key> mpm_keys() {
   return {
       choice("mpm.scheme", AT(draft.scene.mpm.scheme), "transfer between particles and grid"),
@@ -311,8 +350,9 @@ std::vector<Key> foam_keys() {
 
 std::vector<Key> every_key() {
   std::vector<Key> all;
-  for (auto group : {general_keys, geometry_keys, l_box_keys, v_funnel_and_dam_break_keys, material_keys,
-                     thixotropy_keys, wall_and_force_keys, time_keys, output_keys, mpm_keys, foam_keys}) {
+  for (auto group :
+       {general_keys, geometry_keys, l_box_keys, v_funnel_and_dam_break_keys, material_keys, thixotropy_keys,
+        wall_and_force_keys, time_keys, output_keys, gauge_keys, mpm_keys, foam_keys}) {
     for (Key& key : group()) all.push_back(std::move(key));
   }
   return all;
@@ -351,6 +391,7 @@ const std::vector<Section>& sections() {
       {"forces", "What drives the flow"},
       {"time", "When a run ends"},
       {"output", "Simulated time between outputs"},
+      {"gauges", "What gauges are defined by, in both solvers and in reports; scales with the body"},
       {"mpm", "The material point solver"},
       {"foam", "OpenFOAM"},
   };

@@ -74,7 +74,7 @@ const Wrong wrong_scenes[] = {
      "[runs], [geometry], [material], [thixotropy],"},
     {"UnknownSection", slump_text, "[foam]", "[faom]",
      "wrong.toml:37:2: unknown section \"faom\", nearest is foam; allowed: runs, geometry, material, "
-     "thixotropy, walls, forces, time, output, mpm, foam"},
+     "thixotropy, walls, forces, time, output, gauges, mpm, foam"},
     {"UnknownTopKey", slump_text, "title =", "titel =",
      "wrong.toml:1:1: unknown key \"titel\", nearest is title; allowed: title, kind, extends, [runs], "
      "[geometry], [material], [thixotropy], [walls],"},
@@ -476,6 +476,20 @@ TEST(WrongScenes, DeepNestingIsRefusedBeforeItCostsTheStack) {
 TEST(WrongScenes, ATextOfMoreThanAMegabyteIsRefused) {
   EXPECT_THAT(complaint(slump_text + "# " + std::string(1 << 20, 'x')),
               testing::HasSubstr("wrong.toml:1:1: is 1049320 bytes long; allowed: 1048576"));
+}
+
+TEST(WrongScenes, AGaugeIsReadWithinTheBodyThatHasIt) {
+  EXPECT_THAT(complaint(slump_text, {{"gauges.spread_depth=0.3"}, {}}),
+              testing::HasSubstr(
+                  "gauges.spread_depth is 0.3 m, and the cone's height is 0.3 m; allowed: less than that"));
+  EXPECT_THAT(complaint(slump_text, {{"gauges.spread_depth=0"}, {}}),
+              testing::HasSubstr("gauges.spread_depth is 0; allowed: greater than 0"));
+  EXPECT_THAT(
+      complaint(slump_text, {{"gauges.front_depth=0.003"}, {}}),
+      testing::HasSubstr(
+          "gauges.front_depth does not belong to a slump; allowed in [gauges]: spread_depth, rest_rate"));
+  EXPECT_THAT(complaint(duct_text, {{"gauges.spread_depth=0.003"}, {}}),
+              testing::HasSubstr("gauges.spread_depth does not belong to a duct"));
 }
 
 }  // namespace

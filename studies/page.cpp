@@ -221,8 +221,9 @@ class StudyPage {
       line.y = {y, y};
       plot.curves.push_back(std::move(line));
     };
-    level(fmt::format("limit, {:.0f} with an uncertainty of {:.0f}", results_.limit->value,
-                      results_.limit->uncertainty),
+    const int decimals = compare::words::decimals_down_to(results_.limit->uncertainty);
+    level(fmt::format("limit, {:.{}f} with an uncertainty of {:.{}f}", results_.limit->value, decimals,
+                      results_.limit->uncertainty, decimals),
           results_.limit->value, 1);
     if (!wish.compare_to_name.empty()) level(wish.compare_to_name, wish.compare_to, 2);
     page_.figure = std::move(plot);

@@ -61,7 +61,10 @@ std::optional<double> of_history(const runs::Run& run, const Name& name) {
   } else if (*name.time > time.back() && run.status() != runs::Status::at_rest) {
     return std::nullopt;  // what is at rest stays as it is; nothing else may be carried on
   } else {
-    result = compare::interpolate(time, value, *name.time);
+    // Between a reading and nothing there is nothing; at a row's own time its neighbours do not count.
+    const auto row = std::find(time.begin(), time.end(), *name.time);
+    result = row != time.end() ? value[static_cast<std::size_t>(row - time.begin())]
+                               : compare::interpolate(time, value, *name.time);
   }
   return std::isfinite(result) ? std::optional(result) : std::nullopt;
 }

@@ -335,17 +335,20 @@ void describe_limit(Results& results, double cell, std::size_t count, double sca
   const LimitWish& wish = *results.study.limit;
   const compare::Limit& limit = *results.limit;
   const std::string unit = unit_of(wish.quantity);
-  results.limit_words = fmt::format("As {} grows, {} tends to {:.0f} {}, with an uncertainty of {:.0f} {}.",
-                                    wish.key, wish.quantity, limit.value, unit, limit.uncertainty, unit);
+  const int decimals = compare::words::decimals_down_to(limit.uncertainty);
+  results.limit_words =
+      fmt::format("As {} grows, {} tends to {:.{}f} {}, with an uncertainty of {:.{}f} {}.", wish.key,
+                  wish.quantity, limit.value, decimals, unit, limit.uncertainty, decimals, unit);
   if (!wish.compare_to_name.empty())
     results.limit_words +=
-        fmt::format(" The {}, {:.0f} {}, is {} that.", wish.compare_to_name, wish.compare_to, unit,
+        fmt::format(" The {}, {:.{}f} {}, is {} that.", wish.compare_to_name, wish.compare_to, decimals, unit,
                     std::abs(limit.value - wish.compare_to) <= limit.uncertainty ? "within" : "not within");
   results.limit_basis = fmt::format(
       "The limit is that of {} values on cells of {:g} m, whose distance from it falls as {}^-{:.2f}; {}.",
       count, cell, wish.key, limit.exponent,
-      second_grid ? fmt::format("on the next coarser cells they differ by up to {:.0f} {}", scatter, unit)
-                  : std::string("no second grid says how far they are converged"));
+      second_grid
+          ? fmt::format("on the next coarser cells they differ by up to {:.{}f} {}", scatter, decimals, unit)
+          : std::string("no second grid says how far they are converged"));
 }
 
 /// The limit from the runs on the finest cells; coarser ones say how uncertain each value is.

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "runs/run_directory.h"
+#include "studies/quantities.h"
 #include "studies/soundness.h"
 
 using namespace flowrest;
@@ -200,6 +201,19 @@ TEST_F(StudyResults, LeavesTablesThatReadBackAndAPage) {
   EXPECT_THAT(html, HasSubstr("Made up"));
 }
 
+TEST_F(StudyResults, AQuantityThatReadsNothingHasNoValue) {
+  const Point& point = points[0];
+  runs::RunWriter writer(folder.run(point.id), *point.scene, "mpm");
+  writer.history_columns({"time_s", "spread_mm", "spread_6_mm"});
+  for (const double t : {0.0, 1.0, 2.0}) writer.history(std::vector{t, 200.0 + t, t < 1.5 ? 190.0 : NAN});
+  writer.finish(runs::Status::end_time, "", "sound");
+  const runs::Run run = runs::read_run(folder.run(point.id));
+  EXPECT_EQ(measure(run, "spread_mm", nullptr), 202.0);
+  EXPECT_FALSE(measure(run, "spread_6_mm", nullptr));
+  EXPECT_EQ(measure(run, "spread_6_mm@1", nullptr), 190.0);
+  EXPECT_FALSE(measure(run, "spread_6_mm@1.5", nullptr)) << "between a reading and nothing there is nothing";
+}
+
 TEST_F(StudyResults, WhatCannotBeTrueIsFoundInARunThatCallsItselfSound) {
   const auto wrong = [&](const std::vector<std::string>& columns, const std::vector<double>& first,
                          const std::vector<double>& last) {
@@ -217,6 +231,8 @@ TEST_F(StudyResults, WhatCannotBeTrueIsFoundInARunThatCallsItselfSound) {
               HasSubstr("volume"));
   EXPECT_THAT(wrong({"time_s", "flocculation_mean"}, {0, 1.0}, {1, -0.1}), HasSubstr("flocculation"));
   EXPECT_THAT(wrong({"time_s", "spread_mm"}, {0, 200.0}, {1, NAN}), HasSubstr("not finite"));
+  EXPECT_EQ(wrong({"time_s", "spread_6_mm"}, {0, 200.0}, {1, NAN}), "") << "a film is nowhere 6 mm deep";
+  EXPECT_THAT(wrong({"time_s", "spread_6_mm"}, {0, 200.0}, {1, INFINITY}), HasSubstr("not finite"));
   EXPECT_THAT(wrong({"time_s", "spread_mm"}, {0, 200.0}, {1, 5000.0}), HasSubstr("domain"));
   EXPECT_THAT(wrong({"time_s", "kinetic_energy_J", "volume_at_rest_m3"}, {0, 0.0, 5.5e-3}, {1, 1e3, 5.5e-3}),
               HasSubstr("speed"));

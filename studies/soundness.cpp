@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runs/gauges.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::studies {
@@ -23,7 +24,8 @@ const std::vector<double>* column(const runs::Run& run, const std::string& name)
 std::string not_finite(const runs::Run& run) {
   for (std::size_t c = 0; c < run.history.names.size(); ++c)
     for (const double v : run.history.columns[c])
-      if (!std::isfinite(v)) return fmt::format("{} is not finite", run.history.names[c]);
+      if (!std::isfinite(v) && !(std::isnan(v) && runs::may_read_nothing(run.history.names[c])))
+        return fmt::format("{} is not finite", run.history.names[c]);
   for (const auto& profile : run.profiles)
     for (const double v : profile.value)
       if (!std::isfinite(v)) return fmt::format("the profile at {:g} s is not finite", profile.time);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "runs/depth.h"
+
 namespace flowrest::compare::exact {
 
 namespace {
@@ -90,7 +92,7 @@ double ArrestedChannel::depth(double x) const {
 }
 
 double ArrestedChannel::reach(double threshold) const {
-  if (threshold >= start_height_) return 0.0;
+  if (threshold >= start_height_) return runs::nothing;
   return front_ - length_between(end_height_, std::max(threshold, end_height_));
 }
 

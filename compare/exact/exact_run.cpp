@@ -11,6 +11,7 @@
 #include "compare/exact/film.h"
 #include "compare/exact/solutions.h"
 #include "runs/depth.h"
+#include "runs/gauges.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::compare::exact {
@@ -19,8 +20,6 @@ namespace {
 
 using runs::RunError;
 using scenes::Scene;
-
-constexpr double spread_threshold = 0.003;  // m, as every run's spread
 
 [[noreturn]] void refuse(const Scene& scene, const std::string& why) {
   throw RunError(fmt::format("{}: this scene has no exact solution here: {}", scene.path.string(), why));
@@ -60,7 +59,7 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
   runs::RunWriter writer(directory, scene, "exact");
   std::vector<double> coordinate = points_to(edge), depth;
   for (const double r : coordinate) depth.push_back(profile.depth(r));
-  const double spread = profile.spread(spread_threshold);
+  const double spread_depth = scene.gauges.spread_depth, spread = profile.spread(spread_depth);
   writer.info()["model"] = "bingham";
   writer.info()["label"] = label;
   writer.info()["source"] = source;
@@ -69,9 +68,10 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
   writer.history(std::vector{scene.time.end, 1000.0 * spread, 1000.0 * profile.depth(0.0), volume});
   writer.profile(scene.time.end, coordinate, depth);
   writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
-  return {directory,
-          fmt::format("{}: spread {:.1f} mm at 3 mm depth ({:.1f} mm at its foot), centre {:.1f} mm", label,
-                      1000.0 * spread, 2000.0 * edge, 1000.0 * profile.depth(0.0))};
+  return {directory, fmt::format("{}: {} at {:g} mm depth ({} at its foot), {}", label,
+                                 runs::shown_length("spread", spread, spread_depth), 1000.0 * spread_depth,
+                                 runs::millimetres(2.0 * edge, spread_depth),
+                                 runs::shown_length("centre", profile.depth(0.0), spread_depth))};
 }
 
 std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::path& directory,
@@ -180,7 +180,8 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
            fmt::format("it would fill the opening ({:.0f} mm), whose upper wall the solution does not have: "
                        "it stands at {:.0f} mm there",
                        1e3 * box.channel_height, 1e3 * shape.depth(box.reservoir_length)));
-  const double front = 1e3 * (shape.reach(spread_threshold) - box.reservoir_length);
+  const double front_depth = scene.gauges.front_depth;
+  const double front = 1e3 * (shape.reach(front_depth) - box.reservoir_length);
   const double end = 1e3 * shape.end_height(), start = 1e3 * shape.start_height();
   const std::string label =
       flocculation ? fmt::format("exact, arrested, flocculation {:g}", *flocculation) : "exact, arrested";
@@ -196,10 +197,12 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
   for (const double x : coordinate) depth.push_back(shape.depth(x));
   writer.profile(scene.time.end, coordinate, depth);
   writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
+  const auto mm = [&](double length) { return runs::millimetres(1e-3 * length, front_depth); };
   return {{directory / "arrested",
-           end > 0.0 ? fmt::format("{}: reaches the end, {:.1f} mm high there, {:.1f} mm at the start", label,
-                                   end, start)
-                     : fmt::format("{}: front {:.1f} mm, {:.1f} mm high at the start", label, front, start)}};
+           end > 0.0
+               ? fmt::format("{}: reaches the end, {} high there, {} at the start", label, mm(end), mm(start))
+               : fmt::format("{}: {}, {} high at the start", label,
+                             runs::shown_length("front", 1e-3 * front, front_depth), mm(start))}};
 }
 
 }  // namespace
@@ -227,19 +230,21 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
   const auto rows = static_cast<int>(std::ceil(scene.time.end / output.history_interval * (1.0 - 1e-12)));
   const int rows_per_profile =
       std::max(1, static_cast<int>(std::lround(output.profile_interval / output.history_interval)));
+  const double spread_depth = scene.gauges.spread_depth;
   double spread = 0.0, height = 0.0;
   for (int row = 0; row <= rows; ++row) {
     film.advance_to(std::min(row * output.history_interval, scene.time.end));
     const auto& state = film.state();
     const auto radius = state.centres();
-    spread = runs::spread(radius, state.depth, spread_threshold);
-    height = runs::centre_depth(radius, state.depth);
+    spread = runs::spread(radius, state.depth, spread_depth);
+    height = runs::centre_depth(radius, state.depth, spread_depth);
     writer.history(std::vector{state.time, 1000.0 * spread, 1000.0 * height, state.volume()});
     if (row % rows_per_profile == 0 || row == rows) writer.profile(state.time, radius, state.depth);
   }
   writer.finish(runs::Status::end_time, "", "sound");
-  return {directory, fmt::format("{}: spread {:.1f} mm at {:g} s, still growing; centre {:.1f} mm", label,
-                                 1000.0 * spread, scene.time.end, 1000.0 * height)};
+  return {directory, fmt::format("{}: {} at {:g} s, still growing; {}", label,
+                                 runs::shown_length("spread", spread, spread_depth), scene.time.end,
+                                 runs::shown_length("centre", height, spread_depth))};
 }
 
 std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory,

@@ -173,13 +173,13 @@ SpreadingFilm bingham_film(const Bingham& material, double gravity, double radiu
 }
 
 Approach approach_to_rest(const Bingham& material, double gravity, double radius, double volume,
-                          double domain_radius, double time) {
+                          double domain_radius, double time, double spread_depth) {
   constexpr int rings = 450;
   const auto speed = [&](bool plug_pulls) {
     SpreadingFilm film = bingham_film(material, gravity, radius, volume, domain_radius, rings, plug_pulls);
     const auto spread_at = [&](double t) {
       film.advance_to(t);
-      return runs::spread(film.state().centres(), film.state().depth);
+      return runs::spread(film.state().centres(), film.state().depth, spread_depth);
     };
     const double before = spread_at(time / std::numbers::sqrt2),
                  after = spread_at(time * std::numbers::sqrt2);

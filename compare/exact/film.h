@@ -59,13 +59,13 @@ SpreadingFilm bingham_film(const Bingham&, double gravity, double radius, double
                            int rings, bool plug_pulls);
 
 /// Speed at which the spread of a slump still grows at a time well after its fall, without and with the pull
-/// of its plug: what exact Bingham material does as it approaches rest. m/s
+/// of its plug, read at `spread_depth`: what exact Bingham material does as it approaches rest. m/s
 struct Approach {
   double film = 0.0, under_plug = 0.0;
 };
 /// By SpreadingFilm from the cone's foot, over as long as makes the width of its rings matter little: with
 /// D = D_rest - c / t the speed c / t^2 is sqrt(2) (D(sqrt(2) t) - D(t / sqrt(2))) / t.
 Approach approach_to_rest(const Bingham&, double gravity, double radius, double volume, double domain_radius,
-                          double time);
+                          double time, double spread_depth);
 
 }  // namespace flowrest::compare::exact

@@ -30,7 +30,7 @@ SpreadingFilm regularised_film(RegularisedFluid::Law law, double time, int rings
 
 double spread_at(SpreadingFilm& film, double time) {
   film.advance_to(time);
-  return runs::spread(film.state().centres(), film.state().depth);
+  return runs::spread(film.state().centres(), film.state().depth, 0.003);
 }
 
 TEST(Film, AStiffRegularisedFluidFlowsAsBinghamDoes) {
@@ -72,7 +72,8 @@ TEST(Film, KeepsItsVolumeAndApproachesTheArrestedShapeFromBelow) {
   }
   EXPECT_NEAR(earlier, arrested.spread(0.003), 0.002);
   EXPECT_NEAR(film.state().volume(), volume, 1e-8 * volume);
-  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth), arrested.depth(0.0), 5e-4);
+  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth, 0.003), arrested.depth(0.0),
+              5e-4);
 }
 
 /// The pull takes all slope from a film no deeper than the nose, and the same stress from a deeper one.
@@ -98,7 +99,8 @@ TEST(Film, UnderItsPlugsPullApproachesTheSecondOrderShape) {
   }
   EXPECT_NEAR(earlier, arrested.spread(0.003), 0.008);
   EXPECT_NEAR(film.state().volume(), volume, 1e-8 * volume);
-  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth), arrested.depth(0.0), 1e-3);
+  EXPECT_NEAR(runs::centre_depth(film.state().centres(), film.state().depth, 0.003), arrested.depth(0.0),
+              1e-3);
 }
 
 /// The growth still to come falls as 1/t: what the centre sinks from 50 to 100 s is four times what it sinks
@@ -153,7 +155,7 @@ TEST(Film, LeavesARunOfWhatAScenesMaterialDoes) {
 }
 
 TEST(Film, TheSpeedOfItsApproachIsTheSlopeOfAFinerFilm) {
-  const Approach at_60 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 60.0);
+  const Approach at_60 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 60.0, 0.003);
   // Over so long that rings do not matter: spread = rest - c / t.
   SpreadingFilm film = bingham_film(900);
   const double early = spread_at(film, 30.0), late = spread_at(film, 120.0);
@@ -163,7 +165,7 @@ TEST(Film, TheSpeedOfItsApproachIsTheSlopeOfAFinerFilm) {
   EXPECT_LT(at_60.under_plug, 0.85 * at_60.film);
   EXPECT_GT(at_60.under_plug, 0.4 * at_60.film);
   // As 1 / t^2.
-  const Approach at_120 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 120.0);
+  const Approach at_120 = approach_to_rest(roussel, gravity, 0.1, volume, 0.45, 120.0, 0.003);
   EXPECT_NEAR(at_60.film / at_120.film, 4.0, 1.2);
 }
 

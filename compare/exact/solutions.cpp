@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "runs/depth.h"
+
 namespace flowrest::compare::exact {
 
 using std::numbers::pi;
@@ -24,7 +26,7 @@ double ArrestedSlump::volume() const {
 }
 
 double ArrestedSlump::spread(double threshold) const {
-  if (threshold >= depth(0.0)) return 0.0;
+  if (threshold >= depth(0.0)) return runs::nothing;
   const double over_nose = std::max(0.0, threshold - nose);
   return 2.0 * (radius - std::max(0.0, over_nose * over_nose - nose * nose) / (2.0 * length));
 }
@@ -57,7 +59,8 @@ double ArrestedPlaneSlump::half_area() const {
 }
 
 double ArrestedPlaneSlump::spread(double threshold) const {
-  return 2.0 * std::max(0.0, half_width - threshold * threshold / (2.0 * length));
+  if (threshold >= depth(0.0)) return runs::nothing;
+  return 2.0 * (half_width - threshold * threshold / (2.0 * length));
 }
 
 ArrestedPlaneSlump plane_slump(const Bingham& material, double gravity, double half_area) {

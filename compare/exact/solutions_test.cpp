@@ -66,11 +66,12 @@ TEST(ArrestedSlump, SpreadAtAThresholdInvertsTheProfile) {
   for (const auto& slump : {leading_order_slump(concrete(50.0), 9.81, cone_volume),
                             second_order_slump(concrete(50.0), 9.81, cone_volume)}) {
     EXPECT_NEAR(slump.depth(0.5 * slump.spread(0.02)), 0.02, 1e-12);
-    EXPECT_EQ(slump.spread(0.05), 0.0);
+    EXPECT_TRUE(std::isnan(slump.spread(0.05)));
   }
   EXPECT_NEAR(1000.0 * leading_order_slump(concrete(50.0), 9.81, cone_volume).spread(0.003), 595.9, 0.1);
   const ArrestedSlump blunt = second_order_slump(concrete(50.0), 9.81, cone_volume);
   EXPECT_EQ(blunt.spread(0.003), 2.0 * blunt.radius) << "the nose is deeper than 3 mm";
+  EXPECT_TRUE(std::isnan(blunt.spread(1.0))) << "nowhere so deep: nothing is read";
 }
 
 TEST(ArrestedPlaneSlump, HoldsItsAreaAndFollowsTheKnownLength) {

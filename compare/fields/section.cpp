@@ -57,14 +57,15 @@ std::vector<double> chosen_times(const std::vector<Source>& sources, double end,
 }
 
 /// Of each run the state nearest to each time; none twice, and none that is further away than half a second
-/// or a twentieth of the time.
-void read_states(Source& source, const std::vector<double>& times) {
+/// of the standard apparatus or a twentieth of the time.
+void read_states(Source& source, const std::vector<double>& times, double time_unit) {
   std::set<std::size_t> wanted;
   const auto& recorded = source.recording->times();
   for (const double time : times) {
     const std::size_t index = nearest(recorded, time);
     const double away = std::abs(recorded[index] - time);
-    if (away <= std::max(0.55, 0.05 * time) || (time > recorded.back() && index + 1 == recorded.size()))
+    if (away <= std::max(0.55 * time_unit, 0.05 * time) ||
+        (time > recorded.back() && index + 1 == recorded.size()))
       wanted.insert(index);
   }
   for (const std::size_t index : wanted) source.states.push_back(source.recording->read(index));
@@ -199,8 +200,10 @@ std::array<double, 4> extent_of(const std::vector<Source>& sources) {
   return box;
 }
 
-/// The height at which an L-box is cut level, m (Yu et al. 2026, Fig. 23).
-constexpr double level_height = 0.05;
+/// The height at which an L-box is cut level, m: 50 mm of one 600 mm high (Yu et al. 2026, Fig. 23).
+double level_height(const Comparison& comparison) {
+  return setting(comparison.runs.front(), "/geometry/reservoir_height").value_or(0.6) / 12.0;
+}
 
 std::optional<report::Section> section_of(const Comparison& comparison, const Cut& cut,
                                           std::size_t most_times, std::size_t budget) {
@@ -217,7 +220,7 @@ std::optional<report::Section> section_of(const Comparison& comparison, const Cu
 
   const auto times = chosen_times(sources, comparison.end, most_times);
   for (Source& source : sources)
-    if (source.recording) read_states(source, times);
+    if (source.recording) read_states(source, times, comparison.thresholds.time_unit);
 
   report::Section section{.id = "sections", .title = "particles and volume fraction on the section"};
   section.caption =
@@ -267,7 +270,7 @@ std::vector<report::Section> sections_of(const Comparison& comparison, std::size
   const std::size_t each = level ? budget / 2 : budget;
   if (auto upright = section_of(comparison, {}, most_times, each)) sections.push_back(std::move(*upright));
   if (level)
-    if (auto seen_from_above = section_of(comparison, {level_height}, most_times, each))
+    if (auto seen_from_above = section_of(comparison, {level_height(comparison)}, most_times, each))
       sections.push_back(std::move(*seen_from_above));
   return sections;
 }

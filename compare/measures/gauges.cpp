@@ -1,17 +1,18 @@
 #include "compare/measures/gauges.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "runs/gauges.h"
 
 namespace flowrest::compare {
 
 namespace {
 
 using scenes::Kind;
-
-/// Material that still hides the light: the depth at which fronts are read.
-constexpr double clear_mm = 3.0;
 
 Gauge millimetres(const std::string& name, const std::string& column, const std::string& more,
                   const std::string& less, const std::string& caption) {
@@ -48,8 +49,8 @@ std::optional<double> first_passing(const runs::Run& run, const std::string& col
   const auto& time = run.history.at("time_s");
   const auto& value = run.history.at(column);
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (upwards ? value[i] < threshold : value[i] > threshold) continue;
-    if (i == 0 || value[i] == value[i - 1]) return time[i];
+    if (std::isnan(value[i]) || (upwards ? value[i] < threshold : value[i] > threshold)) continue;
+    if (i == 0 || std::isnan(value[i - 1]) || value[i] == value[i - 1]) return time[i];
     return std::lerp(time[i - 1], time[i], (threshold - value[i - 1]) / (value[i] - value[i - 1]));
   }
   return std::nullopt;
@@ -61,11 +62,16 @@ std::string Gauge::suffix() const {
   return unit == "mm" ? "_mm" : unit == "m/s" ? "_m_s" : unit == "%" ? "_percent" : "";
 }
 
+std::string Gauge::caption_for(const scenes::Gauges& gauges, Kind kind) const {
+  return fmt::format(fmt::runtime(caption), fmt::arg("depth", 1e3 * gauges.edge_depth(kind)),
+                     fmt::arg("length", 1e3 * gauges.end_length));
+}
+
 const Gauge& gauge_of(Kind kind) {
-  static const Gauge spread = millimetres(
-      "spread", "spread_mm", "wider", "narrower",
-      "Spread: twice the radius at which the depth falls through 3 mm. A thin dotted tail continues a "
-      "run that has come to rest.");
+  static const Gauge spread = millimetres("spread", "spread_mm", "wider", "narrower",
+                                          "Spread: twice the radius at which the depth falls through "
+                                          "{depth:g} mm. A thin dotted tail continues a "
+                                          "run that has come to rest.");
   static const Gauge velocity = {
       "plug velocity",
       "velocity",
@@ -79,11 +85,11 @@ const Gauge& gauge_of(Kind kind) {
       "force."};
   static const Gauge front_of_box = millimetres(
       "front", "front_mm", "further", "shorter",
-      "Front: the distance from the gate at which the depth falls through 3 mm; it ends at the end "
+      "Front: the distance from the gate at which the depth falls through {depth:g} mm; it ends at the end "
       "wall. A thin dotted tail continues a run that has come to rest.");
   static const Gauge front_of_dam = millimetres("front", "front_mm", "further", "shorter",
                                                 "Front: the distance from the back wall at which the depth "
-                                                "falls through 3 mm; it ends at the end wall.");
+                                                "falls through {depth:g} mm; it ends at the end wall.");
   static const Gauge discharged = {"discharged fraction",
                                    "discharged",
                                    "discharged_fraction",
@@ -110,14 +116,14 @@ const Gauge& gauge_of(Kind kind) {
 
 const std::vector<Gauge>& further_gauges(Kind kind) {
   static const Gauge end = millimetres("height at the end wall", "end_height_mm", "higher", "lower",
-                                       "The mean depth over the last 20 mm before the end wall.");
+                                       "The mean depth over the last {length:g} mm before the end wall.");
   static const Gauge start = millimetres("height at the back wall", "start_height_mm", "higher", "lower",
-                                         "The mean depth over the first 20 mm.");
+                                         "The mean depth over the first {length:g} mm.");
   static const Gauge height = millimetres("height in the middle", "height_mm", "higher", "lower",
                                           "The depth on the axis of the slump.");
-  static const Gauge sight = millimetres(
-      "thinnest line of sight", "thinnest_sight_mm", "thicker", "thinner",
-      "The least material on any line of sight through the outlet: light is seen once it is below 3 mm.");
+  static const Gauge sight = millimetres("thinnest line of sight", "thinnest_sight_mm", "thicker", "thinner",
+                                         "The least material on any line of sight through the outlet: light "
+                                         "is seen once it is below {depth:g} mm.");
   static const std::vector<Gauge> of_slump = {height, flocculation}, of_duct = {flocculation},
                                   of_box = {end, start, flocculation}, of_funnel = {sight, flocculation};
   switch (kind) {
@@ -187,11 +193,13 @@ std::optional<double> read(const runs::Run& run, const std::string& quantity) {
     const auto rest = run.info.find("rest_time_s");
     return rest != run.info.end() && rest->is_number() ? std::optional(rest->get<double>()) : std::nullopt;
   }
-  if (quantity == "light_s") return first_passing(run, "thinnest_sight_mm", clear_mm, false);
+  if (quantity == "light_s")
+    return first_passing(run, "thinnest_sight_mm", 1e3 * runs::gauges_of(run).light_depth, false);
   if (quantity == "arrival_s") {
     const auto wall = end_wall(run);
     // The front is read on a grid and stops a rounding error short of the wall.
-    return wall ? first_passing(run, "front_mm", *wall - 1e-6, true) : std::nullopt;
+    constexpr double short_of_it = 1e-9;
+    return wall ? first_passing(run, "front_mm", (1.0 - short_of_it) * *wall, true) : std::nullopt;
   }
   const bool ended = run.status() == runs::Status::at_rest || run.status() == runs::Status::end_time;
   if (!ended || !run.history.has(quantity) || run.history.rows() == 0) return std::nullopt;

@@ -13,14 +13,16 @@ namespace flowrest::compare {
 
 /// A column of history.csv and how a report speaks of it.
 struct Gauge {
-  std::string name;          ///< "spread"
-  std::string key;           ///< of figures and files: "spread"
-  std::string column;        ///< of history.csv: "spread_mm"
-  std::string unit;          ///< of figures, tables and files: "mm"
-  double si = 1.0;           ///< SI units in one unit of the column
-  double shown = 1.0;        ///< units of the figures in one SI unit
-  std::string more, less;    ///< how a run stands to another: "wider", "narrower"
-  std::string caption = {};  ///< what it is, for figures
+  std::string name;        ///< "spread"
+  std::string key;         ///< of figures and files: "spread"
+  std::string column;      ///< of history.csv: "spread_mm"
+  std::string unit;        ///< of figures, tables and files: "mm"
+  double si = 1.0;         ///< SI units in one unit of the column
+  double shown = 1.0;      ///< units of the figures in one SI unit
+  std::string more, less;  ///< how a run stands to another: "wider", "narrower"
+  /// What it is, for figures; {depth} and {length} stand for what it is read at, in mm.
+  std::string caption = {};
+  std::string caption_for(const scenes::Gauges&, scenes::Kind) const;
   /// Of columns and JSON keys: "_mm", "_m_s", "_percent".
   std::string suffix() const;
 };
@@ -49,9 +51,9 @@ const std::vector<Reading>& readings_of(scenes::Kind);
 Reading reading_named(const std::string& quantity);
 
 /// arrival_s: when the front reaches the end of channel or tank; light_s: when light is first seen through a
-/// funnel (less than 3 mm of material on some line of sight); rest_s: when the run declares rest; any column
-/// of history.csv: its value at the end. Nothing where it never happens, or where the run did not come to its
-/// end.
+/// funnel (less than `gauges.light_depth` of material on some line of sight); rest_s: when the run declares
+/// rest; any column of history.csv: its value at the end. Nothing where it never happens, where the run did
+/// not come to its end, or where its last row reads nothing.
 std::optional<double> read(const runs::Run&, const std::string& quantity);
 
 /// How well a value on cells of `cell` is known by the same on cells of `other_cell`: their difference, taken

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "runs/depth.h"
+
 using namespace flowrest;
 using namespace flowrest::compare;
 
@@ -32,6 +34,32 @@ TEST(Gauges, TheFrontArrivesBetweenTwoRows) {
 TEST(Gauges, LightIsSeenWhereTheThinnestLineFallsThroughThreeMillimetres) {
   const auto run = run_of({"time_s", "thinnest_sight_mm"}, {{0.0, 1.0, 2.0}, {600.0, 13.0, 0.0}});
   EXPECT_NEAR(*read(run, "light_s"), 1.0 + 10.0 / 13.0, 1e-12);
+}
+
+TEST(Gauges, LightIsSeenAtTheDepthThatTheRunNames) {
+  auto run = run_of({"time_s", "thinnest_sight_mm"}, {{0.0, 1.0, 2.0}, {600.0, 13.0, 0.0}});
+  run.info["settings"]["gauges"]["light_depth"] = 0.0065;
+  EXPECT_NEAR(*read(run, "light_s"), 1.5, 1e-12);
+}
+
+TEST(Gauges, WhatReadsNothingIsNeitherAnEventNorAnEnd) {
+  constexpr double nothing = runs::nothing;
+  const auto front = run_of({"time_s", "front_mm"}, {{0.0, 1.0, 2.0}, {nothing, nothing, nothing}});
+  EXPECT_FALSE(read(front, "arrival_s"));
+  EXPECT_FALSE(read(front, "front_mm"));
+  const auto late = run_of({"time_s", "front_mm"}, {{0.0, 1.0, 2.0}, {nothing, 500.0, 600.0}});
+  EXPECT_NEAR(*read(late, "arrival_s"), 2.0, 1e-6);
+  const auto sight = run_of({"time_s", "thinnest_sight_mm"}, {{0.0, 1.0, 2.0}, {nothing, 13.0, 0.0}});
+  EXPECT_NEAR(*read(sight, "light_s"), 1.0 + 10.0 / 13.0, 1e-12);
+}
+
+TEST(Gauges, CaptionsSayWhatTheyAreReadAt) {
+  EXPECT_NE(gauge_of(scenes::Kind::slump).caption_for({}, scenes::Kind::slump).find("falls through 3 mm"),
+            std::string::npos);
+  EXPECT_NE(further_gauges(scenes::Kind::l_box)[0]
+                .caption_for({.end_length = 0.005}, scenes::Kind::l_box)
+                .find("last 5 mm"),
+            std::string::npos);
 }
 
 TEST(Gauges, WhatIsCutOffHasNoEndButItsEventsStand) {

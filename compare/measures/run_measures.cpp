@@ -1,5 +1,7 @@
 #include "compare/measures/run_measures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -92,19 +94,24 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
                              view.gauge.empty() ? slump.radius : 0.5 * view.gauge.value.back());
 }
 
+/// What a gauge reads; empty where it reads nothing.
+std::optional<double> read_value(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 std::optional<double> drift(const Series& series) {
   if (series.empty() || series.value.front() == 0.0) return std::nullopt;
   return series.value.back() / series.value.front() - 1.0;
 }
 
-Cause cause_of(const RunView& view, const Options& options, double rest_speed) {
+Cause cause_of(const RunView& view, const Thresholds& thresholds, double rest_speed) {
   const Measures& m = view.measures;
   // A record that was cut off may have been cut off while it still flowed.
   if (!m.residual || !view.trouble.empty()) return Cause::unknown;
   const double speed = std::abs(*m.residual);
   if (!view.fluid)
     return speed <= rest_speed ? Cause::at_rest : view.held ? Cause::within_bound : Cause::approaching_rest;
-  const bool explained = m.predicted_creep && speed <= options.creep_factor * *m.predicted_creep;
+  const bool explained = m.predicted_creep && speed <= thresholds.creep_factor * *m.predicted_creep;
   if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
   if (view.noisy) return Cause::noise;
   return m.predicted_creep ? Cause::unexplained : Cause::unknown;
@@ -119,7 +126,8 @@ RunView* other_grid(Comparison& comparison, const RunView& view) {
   double closest = std::numeric_limits<double>::infinity();
   for (RunView& other : comparison.runs) {
     const auto cell = cell_of(other);
-    if (!own || !cell || other.solver != view.solver || other.model != view.model || !other.trouble.empty())
+    if (!own || !cell || other.unread || other.solver != view.solver || other.model != view.model ||
+        !other.trouble.empty())
       continue;
     const double away = std::abs(std::log(*own / *cell));
     if (away < 0.1 || away >= closest) continue;
@@ -132,7 +140,7 @@ RunView* other_grid(Comparison& comparison, const RunView& view) {
 /// By how much the gauge at the end still changes with the grid, taken on to zero cell size at first order.
 std::optional<double> grid_difference(Comparison& comparison, const RunView& view) {
   const RunView* other = other_grid(comparison, view);
-  if (!other || view.gauge.empty() || other->gauge.empty()) return std::nullopt;
+  if (!other || view.gauge.empty() || view.unread || other->gauge.empty()) return std::nullopt;
   // At the last time that both have reached; what is at rest stays as it is.
   const double last = view.held     ? other->gauge.end()
                       : other->held ? view.gauge.end()
@@ -149,7 +157,8 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
   const RunView* best = nullptr;
   int best_score = -1;
   for (const RunView& other : comparison.runs) {
-    if (other.model != "elasto-viscoplastic" || other.exact || other.gauge.empty() || !other.trouble.empty())
+    if (other.model != "elasto-viscoplastic" || other.exact || other.gauge.empty() || other.unread ||
+        !other.trouble.empty())
       continue;
     // A front in a box that still runs is no measure of rest.
     const bool rests = other.held || other.measures.cause == Cause::at_rest;
@@ -167,20 +176,21 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
 }  // namespace
 
 void measure(RunView& view, const Comparison& comparison) {
-  const Options& options = comparison.options;
+  const Thresholds& thresholds = comparison.thresholds;
   const bool slump = comparison.kind == scenes::Kind::slump, grows = grows_to_rest(comparison.kind);
   Measures& m = view.measures;
   const Json& info = view.run.info;
   if (!view.gauge.empty()) {
     m.end = view.gauge.end();
-    m.gauge_end = view.gauge.value.back();
+    if (!view.unread) m.gauge_end = view.gauge.value.back();
   }
   if (!view.run.profiles.empty()) {
     const auto& last = view.run.profiles.back();
     if (slump) {
-      m.spread_1_5mm = runs::spread(last.coordinate, last.value, 0.0015);
-      m.spread_6mm = runs::spread(last.coordinate, last.value, 0.006);
-      m.centre_depth = runs::centre_depth(last.coordinate, last.value);
+      const double depth = view.gauges.spread_depth;
+      m.spread_at_half = read_value(runs::spread(last.coordinate, last.value, 0.5 * depth));
+      m.spread_at_twice = read_value(runs::spread(last.coordinate, last.value, 2.0 * depth));
+      m.centre_depth = read_value(runs::centre_depth(last.coordinate, last.value, depth));
     }
     m.end = std::max(m.end.value_or(last.time), last.time);
   }
@@ -201,25 +211,25 @@ void measure(RunView& view, const Comparison& comparison) {
   if (m.cpu && m.end && *m.end > 0.0) m.cpu_per_simulated_second = *m.cpu / *m.end;
   m.volume_drift = drift(column(view.run, "volume_m3"));
   m.mass_drift = drift(column(view.run, "mass_kg"));
-  m.rest_by_shear_rate = settles_below(view.shear_rate, options.rest_shear_rate);
+  m.rest_by_shear_rate = settles_below(view.shear_rate, thresholds.rest_shear_rate);
   m.predicted_creep = predicted_creep(view, comparison.kind);
-  if (view.gauge.empty() || comparison.kind == scenes::Kind::v_funnel) return;
+  if (view.gauge.empty() || view.unread || comparison.kind == scenes::Kind::v_funnel) return;
   const double end = view.gauge.end();
   // Of a short record the last fifth, so that how the flow began is not taken for how it ends.
-  const double window = std::min(options.residual_window, 0.2 * (end - view.gauge.time.front()));
+  const double window = std::min(thresholds.residual_window, 0.2 * (end - view.gauge.time.front()));
   const auto last = trend(view.gauge, end - window, end);
   if (last) m.residual_scatter = last->scatter;
   if (grows) {
-    const Series rate = rate_of_change(view.gauge, options.rate_window);
-    m.rest_by_spread_rate = settles_below(rate, options.rest_spread_rate);
+    const Series rate = rate_of_change(view.gauge, thresholds.rate_window);
+    m.rest_by_spread_rate = settles_below(rate, thresholds.rest_spread_rate);
     // A cone takes a moment to start: rest before it has moved is not rest.
     if (m.rest_by_spread_rate && *m.rest_by_spread_rate <= view.gauge.time.front())
       m.rest_by_spread_rate.reset();
     if (last) m.residual = last->slope;
-    m.cause = cause_of(view, options, options.still_speed);
+    m.cause = cause_of(view, thresholds, thresholds.still_speed);
   } else {
     const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
-    const double threshold = options.rest_velocity_fraction * largest;
+    const double threshold = thresholds.rest_velocity_fraction * largest;
     double step = 0.0;
     for (const auto& [from, force] : body_force(view))
       if (from < end) step = from;
@@ -233,7 +243,7 @@ void measure(RunView& view, const Comparison& comparison) {
                      last_values.value.begin() + static_cast<std::ptrdiff_t>(last_values.value.size() / 2),
                      last_values.value.end());
     m.residual = last_values.value[last_values.value.size() / 2];
-    m.cause = cause_of(view, options, threshold);
+    m.cause = cause_of(view, thresholds, threshold);
   }
   for (const double stop : comparison.stops) {
     const auto value = view.gauge_at(stop);
@@ -246,7 +256,7 @@ void measure(RunView& view, const Comparison& comparison) {
 void measure_approach(Comparison& comparison) {
   if (comparison.kind != scenes::Kind::slump) return;
   // Before that, a slump's inertia and its start decide.
-  constexpr double earliest = 5.0;  // s
+  const double unit = comparison.thresholds.time_unit, earliest = 5.0 * unit;
   std::map<std::vector<double>, exact::Approach> known;
   for (RunView& view : comparison.runs) {
     Measures& m = view.measures;
@@ -259,20 +269,23 @@ void measure_approach(Comparison& comparison) {
                       !view.run.info.contains(Json::json_pointer("/settings/thixotropy"));
     if (!film || !m.end || *m.end < earliest) continue;
     const auto& [material, gravity, cone] = *facts;
-    const double end = std::round(*m.end);
+    const double end = unit * std::round(*m.end / unit);
     const std::vector<double> key = {
         material.density,        material.yield_stress, material.plastic_viscosity, gravity,
-        cone.cone_radius_bottom, cone.volume(),         cone.domain_radius,         end};
+        cone.cone_radius_bottom, cone.volume(),         cone.domain_radius,         end,
+        view.gauges.spread_depth};
     auto found = known.find(key);
     if (found == known.end())
-      found = known
-                  .emplace(key, exact::approach_to_rest(material, gravity, cone.cone_radius_bottom,
-                                                        cone.volume(), cone.domain_radius, end))
-                  .first;
+      found =
+          known
+              .emplace(key, exact::approach_to_rest(material, gravity, cone.cone_radius_bottom, cone.volume(),
+                                                    cone.domain_radius, end, view.gauges.spread_depth))
+              .first;
+    if (!std::isfinite(found->second.film) || !std::isfinite(found->second.under_plug)) continue;
     m.approach_least = std::min(found->second.film, found->second.under_plug);
     m.approach_most = std::max(found->second.film, found->second.under_plug);
     if (m.cause == Cause::unexplained && *m.residual >= 0.0 &&
-        *m.residual <= *m.approach_most + comparison.options.creep_factor * *m.predicted_creep)
+        *m.residual <= *m.approach_most + comparison.thresholds.creep_factor * *m.predicted_creep)
       m.cause = Cause::approaching_rest;
   }
 }
@@ -285,7 +298,7 @@ void measure_overshoot(Comparison& comparison) {
     if (!reference) continue;
     view.measures.overshoot_reference = reference->measures.gauge_end;
     view.measures.overshoot_reference_run = reference->label;
-    for (const double time : comparison.options.overshoot_times)
+    for (const double time : comparison.thresholds.overshoot_times)
       if (const auto value = view.gauge_at(time))
         view.measures.overshoot[time] = *value - *reference->measures.gauge_end;
   }
@@ -315,8 +328,11 @@ void measure_uncertainty(Comparison& comparison) {
     else if (const auto cell = cell_of(view); cell && grows_to_rest(comparison.kind))
       raise(*cell, "its cell (there is no second grid)");
     if (m.residual_scatter) raise(2.0 * *m.residual_scatter, "the scatter of its record");
-    if (m.spread_1_5mm && m.spread_6mm && ends_in_film(comparison, *m.spread_1_5mm - *m.spread_6mm))
-      raise(0.5 * (*m.spread_1_5mm - *m.spread_6mm), "how its edge is read (at 1.5 or at 6 mm of depth)");
+    if (m.spread_at_half && m.spread_at_twice &&
+        ends_in_film(comparison, *m.spread_at_half - *m.spread_at_twice))
+      raise(0.5 * (*m.spread_at_half - *m.spread_at_twice),
+            fmt::format("how its edge is read (at {:g} or at {:g} mm of depth)",
+                        500.0 * view.gauges.spread_depth, 2000.0 * view.gauges.spread_depth));
   }
 }
 

@@ -17,11 +17,12 @@ void measure_overshoot(Comparison&);
 
 /// How well the readings of each run are known by another grid, and its gauge at the end: by a run of the
 /// same law and solver on another grid where there is one, else by its cell; never less than its scatter nor,
-/// where its edge is a film, than half of what it changes by when the edge is read at 1.5 or at 6 mm.
+/// where its edge is a film, than half of what it changes by when the edge is read at half or at twice the
+/// depth.
 void measure_uncertainty(Comparison&);
 
-/// Whether the spread's change between readings at 1.5 and at 6 mm of depth (m) is that of a film and not of
-/// a sloping edge: three cells or more.
+/// Whether the spread's change between readings at half and at twice its depth (m) is that of a film and not
+/// of a sloping edge: three cells or more.
 bool ends_in_film(const Comparison&, double sensitivity);
 
 }  // namespace flowrest::compare

@@ -8,6 +8,7 @@
 
 #include "mpm/solver/settings.h"
 #include "runs/depth.h"
+#include "runs/gauges.h"
 
 namespace flowrest::mpm {
 
@@ -16,7 +17,7 @@ namespace {
 /// A value and the mass that has it.
 using Weighted = std::pair<double, double>;
 
-/// The value that `share` of the mass does not exceed. Reorders the values.
+/// The value that `share` of the mass does not exceed; nothing without mass. Reorders the values.
 double quantile(std::vector<Weighted>& values, double share) {
   std::sort(values.begin(), values.end());
   double total = 0.0;
@@ -24,7 +25,7 @@ double quantile(std::vector<Weighted>& values, double share) {
   double sum = 0.0;
   for (const auto& v : values)
     if ((sum += v.second) >= share * total) return v.first;
-  return values.empty() ? 0.0 : values.back().first;
+  return values.empty() ? runs::nothing : values.back().first;
 }
 
 /// Sums common to every kind of scene.
@@ -177,10 +178,11 @@ Measures Gauges::measure_channel(Solver& solver) const {
     m.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing);
     m.value.push_back(factor_ * volume[i] / (spacing * width));
   }
-  m.front = runs::front(m.coordinate, m.value, length) - begin;
+  m.front = runs::front(m.coordinate, m.value, length, scene_.gauges.front_depth) - begin;
   m.front_mass_995 = quantile(places, 0.995) - begin;
-  m.end_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::last);
-  m.start_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::first);
+  const double over = scene_.gauges.end_length;
+  m.end_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::last, over);
+  m.start_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::first, over);
   return m;
 }
 
@@ -263,10 +265,10 @@ std::vector<double> Gauges::row(double time, double step, const Measures& m) con
   std::vector<double> row = {time};
   switch (scene_.kind) {
     case scenes::Kind::slump:
-      for (const double threshold : {0.003, 0.0015, 0.006})
-        row.push_back(1e3 * runs::spread(m.coordinate, m.value, threshold));
+      for (const double times : {1.0, 0.5, 2.0})
+        row.push_back(1e3 * runs::spread(m.coordinate, m.value, times * scene_.gauges.spread_depth));
       row.push_back(1e3 * m.spread_mass_995);
-      row.push_back(1e3 * runs::centre_depth(m.coordinate, m.value));
+      row.push_back(1e3 * runs::centre_depth(m.coordinate, m.value, scene_.gauges.spread_depth));
       break;
     case scenes::Kind::duct:
       row.insert(row.end(), {headline_value(m), m.mean_velocity});
@@ -288,24 +290,25 @@ std::vector<double> Gauges::row(double time, double step, const Measures& m) con
 }
 
 double Gauges::headline_value(const Measures& m) const {
-  if (scene_.kind == scenes::Kind::slump) return 1e3 * runs::spread(m.coordinate, m.value);
+  if (scene_.kind == scenes::Kind::slump)
+    return 1e3 * runs::spread(m.coordinate, m.value, scene_.gauges.spread_depth);
   if (scene_.kind == scenes::Kind::v_funnel) return 100.0 * m.discharged;
   if (scene_.kind != scenes::Kind::duct) return 1e3 * m.front;
   // The plug is the middle of the duct: the mean of the innermost two rows.
   const std::size_t middle = m.value.size() / 2;
-  return m.value.size() < 2 ? 0.0 : 0.5 * (m.value[middle - 1] + m.value[middle]);
+  return m.value.size() < 2 ? runs::nothing : 0.5 * (m.value[middle - 1] + m.value[middle]);
 }
 
 std::string Gauges::headline(const Measures& m) const {
   switch (scene_.kind) {
     case scenes::Kind::slump:
-      return fmt::format("spread {:.1f} mm", headline_value(m));
+      return runs::shown_length("spread", 1e-3 * headline_value(m), scene_.gauges.spread_depth);
     case scenes::Kind::duct:
       return fmt::format("plug {:.4f} m/s", headline_value(m));
     case scenes::Kind::v_funnel:
       return fmt::format("discharged {:.1f} %", headline_value(m));
     default:
-      return fmt::format("front {:.1f} mm", headline_value(m));
+      return runs::shown_length("front", 1e-3 * headline_value(m), scene_.gauges.front_depth);
   }
 }
 

@@ -16,7 +16,7 @@ struct Energies {
   double kinetic = 0.0, potential = 0.0, elastic = 0.0, dissipated = 0.0, numerical = 0.0;
 };
 
-/// What is measured of the particles at one time.
+/// What is measured of the particles at one time. What has nothing to read is `runs::nothing`.
 struct Measures {
   Energies energies;
   double volume = 0.0;          ///< m3

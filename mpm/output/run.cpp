@@ -350,7 +350,9 @@ class MpmRun {
     if (const std::string noise = state_.noise.fault(scene_.body_height()); !noise.empty())
       return "noisy: " + noise;
     if (scene_.kind == scenes::Kind::slump) {
-      const double cells = runs::centre_depth(measures_.coordinate, measures_.value) / settings_.cell;
+      const double depth =
+          runs::centre_depth(measures_.coordinate, measures_.value, scene_.gauges.spread_depth);
+      const double cells = depth / settings_.cell;
       if (cells < cells_over_depth_wanted)
         return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
     }

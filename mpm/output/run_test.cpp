@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "mpm/output/checkpoint.h"
+#include "mpm/output/gauges.h"
 #include "mpm/output/test_runs.h"
 
 using namespace flowrest;
@@ -64,6 +65,71 @@ TEST_F(MpmRun, HistoryHasItsColumnsAndARowEveryInterval) {
   EXPECT_EQ(run.status(), runs::Status::end_time);
   EXPECT_EQ(run.info["solver"], "mpm");
   EXPECT_GT(run.info["steps"].get<int>(), 100);
+}
+
+/// A copy of the tiny slump a hundredth as large: stresses and moduli go with lengths, times and speeds with
+/// the root.
+scenes::Scene tiny_slump_a_hundredth_as_large() {
+  return tiny_slump(
+      {"geometry.cone_height=0.003", "geometry.cone_radius_top=0.0005", "geometry.cone_radius_bottom=0.001",
+       "geometry.domain_radius=0.0045", "geometry.domain_height=0.0035", "material.yield_stress=0.5",
+       "material.plastic_viscosity=0.05", "material.youngs_modulus=1e3", "mpm.cell=0.0002",
+       "foam.cell=0.0002", "time.end=0.03", "output.history_interval=0.005", "output.profile_interval=0.01",
+       "output.snapshot_interval=0.01", "output.checkpoint_interval=0.01"});
+}
+
+TEST_F(MpmRun, ACopyAHundredthAsLargeGivesTheSameNumbersScaled) {
+  const auto large = run_and_read(tiny_slump(), "large");
+  const auto small = run_and_read(tiny_slump_a_hundredth_as_large(), "small");
+  const auto scale_of = [](const std::string& column) {
+    if (column == "time_s" || column == "time_step_s") return 0.1;
+    if (column.ends_with("_mm")) return 0.01;
+    if (column.ends_with("_m3")) return 1e-6;
+    if (column.ends_with("_J")) return 1e-8;
+    if (column.ends_with("_1_s")) return 10.0;
+    throw std::logic_error(column + " is of an unknown unit");
+  };
+  ASSERT_EQ(small.history.names, large.history.names);
+  ASSERT_EQ(small.history.rows(), large.history.rows());
+  EXPECT_EQ(small.info["steps"], large.info["steps"]);
+  EXPECT_EQ(small.info["verdict"], large.info["verdict"]);
+  for (const auto& name : large.history.names) {
+    const auto &a = small.history.at(name), &b = large.history.at(name);
+    const double scale = scale_of(name);
+    double most = 0.0;
+    for (const double v : b) most = std::max(most, std::abs(v));
+    for (std::size_t i = 0; i < b.size(); ++i)
+      EXPECT_NEAR(a[i], scale * b[i], 1e-6 * scale * most) << name << " in row " << i;
+    EXPECT_GT(most, 0.0) << name;
+  }
+  EXPECT_GT(small.history.at("spread_mm").back(), 2.0);
+}
+
+TEST_F(MpmRun, TheSpreadIsReadAtTheDepthOfTheScene) {
+  const auto usual = run_and_read(tiny_slump({"time.end=0.1"}), "usual");
+  const auto deep = run_and_read(tiny_slump({"time.end=0.1", "gauges.spread_depth=0.006"}), "deep");
+  EXPECT_EQ(deep.history.at("spread_mm"), usual.history.at("spread_6_mm"));
+  EXPECT_EQ(deep.history.at("spread_1p5_mm"), usual.history.at("spread_mm"));
+  EXPECT_EQ(deep.info["gauges"]["spread_6_mm"]["depth_m"], 0.012);
+  // Deeper than the cone ever is: nothing is read, and nothing is written.
+  const auto none = run_and_read(tiny_slump({"time.end=0.1", "gauges.spread_depth=0.299"}), "none");
+  EXPECT_TRUE(std::isnan(none.history.at("spread_mm").back()));
+  EXPECT_TRUE(std::isnan(none.history.at("spread_6_mm").front()));
+  EXPECT_TRUE(std::isnan(runs::read_run(folder / "none").history.at("spread_mm").back()));
+}
+
+TEST_F(MpmRun, WhatIsShownOfARunHasDigitsThatSuitTheBody) {
+  const auto shown = [](const scenes::Scene& scene, double size, double deep) {
+    Measures m;
+    for (int i = 0; i < 30; ++i) {
+      m.coordinate.push_back(size * (0.01 * i + 0.005));
+      m.value.push_back(i < 20 ? deep : 0.0);
+    }
+    return Gauges(scene).headline(m);
+  };
+  EXPECT_EQ(shown(tiny_slump(), 1.0, 0.03), "spread 408.0 mm");
+  EXPECT_EQ(shown(tiny_slump_a_hundredth_as_large(), 0.01, 0.0003), "spread 4.080 mm");
+  EXPECT_EQ(shown(tiny_slump(), 1.0, 0.002), "no spread: nowhere 3 mm deep");
 }
 
 TEST_F(MpmRun, ThixotropyAddsItsColumn) {

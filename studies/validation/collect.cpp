@@ -78,6 +78,7 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       Number n;
       n.published = published;
       n.solver = fine.wanted->solver;
+      n.grain = compare::words::grain_of(scene.scene.gauges, scene.scene.kind);
       n.model = fine.wanted->model;
       if (published.quantity == "front_mm" && scene.scene.kind == scenes::Kind::l_box)
         n.wall = 1e3 * scene.scene.l_box().channel_length;
@@ -196,7 +197,7 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
                                     std::vector<report::Entry>& entries) {
   report::Plot plot{.id = slug(scene.name) + "-" + slug(gauge.key),
                     .title = fmt::format("{}: {} against time", scene.name, gauge.name),
-                    .caption = gauge.caption};
+                    .caption = gauge.caption_for(scene.scene.gauges, scene.scene.kind)};
   plot.x = {"time", "s", false, true};
   plot.y = {gauge.name, gauge.unit, false, true};
   bool moves = false;
@@ -325,7 +326,10 @@ std::string command_for(const std::string& scene, const Options& options) {
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
                          std::vector<report::Entry>& entries) {
   const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind);
-  SceneFound scene{.name = wanted.name, .title = wanted.scene.title, .kind = wanted.scene.kind};
+  SceneFound scene{.name = wanted.name,
+                   .title = wanted.scene.title,
+                   .kind = wanted.scene.kind,
+                   .gauges = wanted.scene.gauges};
   if (scene.kind == scenes::Kind::l_box) scene.length_mm = 1e3 * wanted.scene.l_box().channel_length;
   std::vector<fs::path> directories;
   for (const Wanted& run : wanted.runs) {
@@ -413,7 +417,7 @@ void judge(Number& n) {
     n.words = "nothing to compare with";
     return;
   }
-  constexpr double at_the_wall = 0.5;  // mm
+  const double at_the_wall = n.wall.value_or(0.0) / 1200.0;  // mm: half a millimetre of an L-box's channel
   if (n.wall && *n.ours > *n.wall - at_the_wall && *n.published.target() < *n.wall - at_the_wall) {
     n.verdict = Verdict::misses;
     n.within = false;

@@ -43,7 +43,8 @@ void print_numbers(const Validation& validation) {
       const auto reading = compare::reading_named(n.published.quantity);
       const auto target = n.published.target();
       // ± takes two bytes and one column.
-      const std::string ours = n.ours ? compare::words::reading(*n.ours, n.uncertainty, reading.unit) : "-";
+      const std::string ours =
+          n.ours ? compare::words::reading(*n.ours, n.uncertainty, reading.unit, n.grain) : "-";
       const std::size_t width = ours.find("±") == std::string::npos ? 14 : 15;
       fmt::print(
           "{:<20} {:<22} {:>10} {:>{}} {}{}\n", scene.name,

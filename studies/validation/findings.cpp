@@ -15,7 +15,7 @@ namespace {
 using compare::words::listed;
 using Holds = Finding::Holds;
 
-constexpr double least_motion = 0.01;  ///< mm/s; slower is not told from rest
+constexpr double least_motion = 0.1;   ///< of gauges.still_speed; slower is not told from rest
 constexpr double least_change = 1e-3;  ///< of the flocculation state, as a share
 constexpr double told_apart = 0.005;   ///< s: half the interval at which histories are recorded
 constexpr double grids_apart = 15.0;   ///< mm, of spreads on two grids
@@ -24,7 +24,15 @@ constexpr std::size_t named_at_most = 4;
 bool is_solid(scenes::Model model) { return model == scenes::Model::elasto_viscoplastic; }
 bool stops_by_itself(scenes::Kind kind) { return kind == scenes::Kind::slump || kind == scenes::Kind::l_box; }
 
-std::string rate(double mm_per_s) { return compare::words::speed(1e-3 * mm_per_s); }
+compare::words::Grain grain_of(const SceneFound& scene) {
+  return compare::words::grain_of(scene.gauges, scene.kind);
+}
+std::string rate(const SceneFound& scene, double mm_per_s) {
+  return compare::words::speed(1e-3 * mm_per_s, grain_of(scene));
+}
+std::string length(const SceneFound& scene, double mm) {
+  return compare::words::spread(1e-3 * mm, grain_of(scene));
+}
 
 /// The scene's runs at its own resolution, by solver and law.
 std::vector<const Found*> fine_runs(const SceneFound& scene) {
@@ -65,7 +73,7 @@ void add_rest(std::vector<Finding>& all, const SceneFound& scene) {
     const auto moving = [&] {
       return fmt::format("{} after {} it still {} by {}", run->arrival ? "full length;" : "",
                          compare::words::time(*run->end), run->arrival ? "rises at the end wall" : "moves",
-                         rate(*run->creep));
+                         rate(scene, *run->creep));
     };
     if (says_nothing(*run) || (!run->rest && !run->creep)) {
       all.push_back(f);
@@ -75,11 +83,13 @@ void add_rest(std::vector<Finding>& all, const SceneFound& scene) {
       f.holds = run->rest ? Holds::yes : Holds::no;
       f.seen = run->rest ? "rests after " + compare::words::time(*run->rest) : moving();
     } else {
-      f.holds = std::abs(*run->creep) > least_motion ? Holds::yes : Holds::no;
+      f.holds =
+          std::abs(*run->creep) > 1e3 * least_motion * scene.gauges.still_speed ? Holds::yes : Holds::no;
       f.seen = moving();
       if (const auto solid_end = end_of_solid(scene, run->wanted.solver))
-        f.seen += fmt::format(", {:.0f} mm {} the solid's end", std::abs(*run->gauge_end - *solid_end),
-                              *run->gauge_end >= *solid_end ? "beyond" : "short of");
+        f.seen +=
+            fmt::format(", {} {} the solid's end", length(scene, std::abs(*run->gauge_end - *solid_end)),
+                        *run->gauge_end >= *solid_end ? "beyond" : "short of");
     }
     if (f.seen.starts_with(" ")) f.seen.erase(0, 1);
     all.push_back(f);
@@ -97,11 +107,11 @@ void add_length(std::vector<Finding>& all, const SceneFound& scene) {
         "Yu Table 3", scene.name, run->wanted);
     if (!says_nothing(*run)) {
       f.seen = run->arrival ? "arrives after " + compare::words::time(*run->arrival)
-                            : fmt::format("is at {:.0f} mm after {}", *run->gauge_end,
+                            : fmt::format("is at {} after {}", length(scene, *run->gauge_end),
                                           compare::words::time(*run->end));
       f.holds = run->arrival.has_value() == arrives ? Holds::yes : Holds::no;
       if (!arrives && !run->arrival && !run->rest && run->creep) {
-        f.seen += ", moving on by " + rate(*run->creep);
+        f.seen += ", moving on by " + rate(scene, *run->creep);
         // As much time again must not bring it to the wall.
         const double wall = scene.length_mm.value_or(*run->gauge_end);
         if (*run->gauge_end + *run->creep * *run->end > wall) f.holds = Holds::undecided;

@@ -56,11 +56,11 @@ std::string plain(double value, const std::string& unit) {
 
 /// A value as its uncertainty has it, for a column of several units; four digits are enough.
 Table::Cell worded(const std::optional<double>& value, const std::optional<double>& uncertainty,
-                   const std::string& unit) {
+                   const std::string& unit, const compare::words::Grain& grain) {
   constexpr double finest = 5e-4;
   if (!value) return {};
   if (uncertainty && *uncertainty < finest * std::abs(*value)) return plain(*value, unit);
-  return unbroken(reading(*value, uncertainty, unit));
+  return unbroken(reading(*value, uncertainty, unit, grain));
 }
 
 /// The verdict in a word or two: what is not known well enough says on which side of the allowed ours lies.
@@ -245,8 +245,8 @@ class ValidationPage {
       group->second.push_back(n->verdict == Verdict::never
                                   ? fmt::format("never instead of {} ({})", target, n->published.scene)
                                   : fmt::format("{} instead of {} ({})",
-                                                reading(*n->ours, n->uncertainty, unit_of(*n)), target,
-                                                n->published.scene));
+                                                reading(*n->ours, n->uncertainty, unit_of(*n), n->grain),
+                                                target, n->published.scene));
     }
     constexpr std::size_t told_of_each = 2;
     std::vector<std::string> items;
@@ -352,14 +352,15 @@ class ValidationPage {
       }
     }
     std::vector<std::string> parts;
+    const auto length = [&](double mm) { return compare::words::spread(1e-3 * mm, finest_grain()); };
     const auto add = [&](const char* what, std::vector<double>& values) {
       if (values.empty()) return;
       std::sort(values.begin(), values.end());
       parts.push_back(
           values.front() == values.back() || values.size() == 2
-              ? fmt::format("{} by {:.0f} mm{}", what, values.back(), values.size() > 1 ? " at most" : "")
-              : fmt::format("{} by {:.0f} mm in the middle and {:.0f} mm at most", what,
-                            values[values.size() / 2], values.back()));
+              ? fmt::format("{} by {}{}", what, length(values.back()), values.size() > 1 ? " at most" : "")
+              : fmt::format("{} by {} in the middle and {} at most", what, length(values[values.size() / 2]),
+                            length(values.back())));
     };
     add("another law (physics) moves the end of a spread or front", law);
     add("another solver (discretisation)", solver);
@@ -368,6 +369,16 @@ class ValidationPage {
     std::string text = listed(parts, "; ") + ".";
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
+  }
+
+  /// Of the smallest body among the scenes.
+  compare::words::Grain finest_grain() const {
+    compare::words::Grain finest;
+    for (const SceneFound& scene : validation_.scenes) {
+      const auto grain = compare::words::grain_of(scene.gauges, scene.kind);
+      if (grain.length < finest.length) finest = grain;
+    }
+    return finest;
   }
 
   std::string cost() const {
@@ -446,19 +457,20 @@ class ValidationPage {
     Table::Cell apart;
     if (difference) {
       const std::string sign = *difference > 0.0 ? "+" : *difference < 0.0 ? "−" : "";
-      apart = sign + (unit == "mm" ? unbroken(fmt::format("{:.0f} mm", std::abs(*difference)))
+      apart = sign + (unit == "mm" ? unbroken(compare::words::spread(1e-3 * std::abs(*difference), n.grain))
                                    : unbroken(fmt::format("{:.2g} {}", std::abs(*difference), unit)));
     }
     std::string grids;
     if (n.ours && n.coarse) {
       const double apart_by = std::abs(*n.ours - *n.coarse);
-      grids = unit == "mm" ? unbroken(fmt::format("{:.0f} mm", apart_by)) : plain(apart_by, unit);
+      grids =
+          unit == "mm" ? unbroken(compare::words::spread(1e-3 * apart_by, n.grain)) : plain(apart_by, unit);
     }
     std::string words = n.words;
     if (!n.walls_differ.empty() && n.ours) words += "; walls differ: " + n.walls_differ;
     if (!n.noise.empty()) words += "; noisy: " + n.noise;
     Table::Row row{{p.scene, compare::reading_named(p.quantity).name, who(n), short_verdict(n),
-                    known(p.measured), known(p.paper), worded(n.ours, n.uncertainty, unit), apart,
+                    known(p.measured), known(p.paper), worded(n.ours, n.uncertainty, unit, n.grain), apart,
                     plain(p.allowed, unit), grids, to_string(p.mark), words, p.source},
                    entry_of(who(n))};
     std::vector<std::string> badges;
@@ -656,7 +668,7 @@ class ValidationPage {
       if (n.ours)
         chapter.blocks.push_back(Text{
             fmt::format("{}: {} {}{}; {}.", who(n), compare::reading_named(n.published.quantity).name,
-                        reading(*n.ours, n.uncertainty, unit_of(n)),
+                        reading(*n.ours, n.uncertainty, unit_of(n), n.grain),
                         n.published.target() ? fmt::format(", {} {}",
                                                            n.published.measured              ? "measured"
                                                            : n.published.mark == Mark::exact ? "exact"

@@ -10,6 +10,7 @@
 
 #include "compare/measures/series.h"
 #include "compare/report/page.h"
+#include "compare/words.h"
 #include "studies/job.h"
 #include "studies/validation/published.h"
 #include "studies/workflow.h"
@@ -73,7 +74,8 @@ struct Number {
       {};                  ///< whether ours itself lies within what is allowed, however well it is known
   std::string words = {};  ///< the verdict in full
   std::string noise = {};  ///< why the run is noisy; empty where it is sound
-  std::string walls_differ = {};  ///< what walls the run does not have as the scene has them, in words
+  std::string walls_differ = {};     ///< what walls the run does not have as the scene has them, in words
+  compare::words::Grain grain = {};  ///< the least that is told of its scene's lengths and times
   std::optional<double> difference() const;
 };
 
@@ -138,6 +140,7 @@ std::string to_string(Finding::Holds);
 struct SceneFound {
   std::string name = {}, title = {};
   scenes::Kind kind = scenes::Kind::slump;
+  scenes::Gauges gauges = {};            ///< what its gauges are defined by
   std::optional<double> length_mm = {};  ///< of an L-box's channel
   std::vector<Found> runs = {};
   std::vector<Number> numbers = {};

@@ -44,7 +44,7 @@ Case roussel(const Variant& v) {
     const double volume = 5.497787143782138e-3;  // of the Abrams cone, m3
     const auto profile = compare::exact::second_order_slump({density, 50.0, 50.0}, gravity, volume);
     const double spread = run.history.at("spread_mm").back();
-    return Measured{std::abs(1e-3 * spread / profile.spread(0.003) - 1.0), spread};
+    return Measured{std::abs(1e-3 * spread / profile.spread(scenes::Gauges{}.spread_depth) - 1.0), spread};
   };
   return c;
 }
