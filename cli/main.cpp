@@ -2,12 +2,18 @@
 // Each room adds its own subcommands; this file only assembles them and turns what went wrong into exit
 // codes.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
+#include <string>
+#include <system_error>
 
 #include "cli/run_command.h"
 #include "mpm/commands.h"
-#include "runs/run_directory.h"
+#include "runs/console.h"
+#include "runs/machine.h"
 #include "scenes/commands.h"
 #include "scenes/scene.h"
 #ifdef FLOWREST_HAS_FOAM
@@ -20,20 +26,35 @@
 
 namespace {
 
-enum Exit { bad_input = 2, numerics_failed = 3, program_missing = 4 };
+enum Exit { bad_input = 2, numerics_failed = 3, program_missing = 4, machine_failed = 5, interrupted = 130 };
 
-int fail(int code, const char* what) {
-  std::fprintf(stderr, "flowrest: %s\n", what);
+constexpr const char* exit_codes =
+    "Exit codes: 0 done; 2 bad input or a folder that may not be written into, nothing is changed; 3 the "
+    "numerics "
+    "failed; 4 a program is missing; 5 the machine failed (disk, memory), what was written stays; 130 "
+    "interrupted.";
+
+int fail(int code, const std::string& what) {
+  flowrest::runs::say(stderr, "flowrest: " + what + "\n");
   return code;
+}
+
+/// What was said last may still be on its way.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  if (code != 0 || !flowrest::runs::machine_is_at_fault(errno)) return code;
+  return fail(machine_failed, std::string("standard output: cannot be written: ") + std::strerror(errno));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace flowrest;
+  runs::settle_standard_streams();
   CLI::App app{
       "flowrest: when does fresh concrete stop, where, and which simulation can be trusted to say so?"};
   app.require_subcommand(1);
+  app.footer(exit_codes);
   app.set_version_flag("--version", FLOWREST_VERSION);
   scenes::add_commands(app);
   mpm::add_commands(app);
@@ -47,9 +68,9 @@ int main(int argc, char** argv) {
   cli::add_run_command(app);
   try {
     app.parse(argc, argv);
-    return 0;
+    return flushed(0);
   } catch (const CLI::RuntimeError& error) {
-    return error.get_exit_code();
+    return flushed(error.get_exit_code());
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : bad_input;
   } catch (const scenes::SceneError& error) {
@@ -60,6 +81,14 @@ int main(int argc, char** argv) {
     return fail(program_missing, error.what());
   } catch (const runs::RunError& error) {
     return fail(bad_input, error.what());
+  } catch (const runs::MachineError& error) {
+    return fail(machine_failed, error.what());
+  } catch (const runs::Interrupted& error) {
+    return fail(interrupted, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(machine_failed, "out of memory; `flowrest check` estimates what a scene takes");
+  } catch (const std::system_error& error) {
+    return fail(runs::machine_is_at_fault(error.code().value()) ? machine_failed : 1, error.what());
   } catch (const std::exception& error) {
     return fail(1, error.what());
   }

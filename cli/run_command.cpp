@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <deque>
 #include <fstream>
 #include <memory>
@@ -12,9 +11,12 @@
 #include <thread>
 #include <utility>
 
+#include "runs/console.h"
 #include "runs/folder.h"
+#include "runs/folder_lock.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "runs/run_folder.h"
 #include "scenes/scene.h"
 #ifdef FLOWREST_HAS_COMPARE
 #include "compare/words.h"
@@ -32,6 +34,7 @@ struct RunCommandOptions {
   std::vector<std::string> scenes, set;
   std::string output = "out", accuracy;
   int jobs = 0;
+  bool force = false;
 };
 
 /// One run of one scene, as a call of this program.
@@ -51,17 +54,16 @@ class RunningJob {
 
   const Job& job() const { return job_; }
   std::optional<runs::ProcessEnd> poll() { return process_.poll(); }
-  void signal(int number) { process_.signal(number); }
+  void hand_on_interrupts() { process_.hand_on_interrupts(); }
 
   /// Prints the whole lines that the log has gained.
   void show_progress() {
     std::ifstream file(log_);
     file.seekg(shown_);
     for (std::string line; std::getline(file, line) && !file.eof();) {
-      fmt::print("{}\n", line);
+      runs::say(stdout, line + "\n");
       shown_ = file.tellg();
     }
-    std::fflush(stdout);
   }
 
  private:
@@ -75,6 +77,23 @@ void add_settings(std::vector<std::string>& arguments, const std::vector<std::st
   for (const auto& s : set) arguments.insert(arguments.end(), {"--set", s});
 }
 
+/// What makes a run of a scene, or goes on with it where its folder holds a part of it.
+std::vector<std::string> begin_or_go_on(const std::string& solver, const std::string& named,
+                                        const fs::path& directory, const std::vector<std::string>& chosen,
+                                        const std::optional<scenes::Model>& model,
+                                        const RunCommandOptions& options) {
+  std::vector<std::string> set = options.set;
+  set.insert(set.end(), chosen.begin(), chosen.end());
+  const scenes::Scene scene = scenes::load_scene(named, {set, model});
+  if (!options.force && runs::standing_in(directory, scene, solver) == runs::Standing::unfinished)
+    return {solver, "--resume", directory.string()};
+  std::vector<std::string> arguments = {solver, named, "-o", directory.string()};
+  if (model) arguments.insert(arguments.end(), {"--model", scenes::to_string(*model)});
+  if (options.force) arguments.push_back("--force");
+  add_settings(arguments, set);
+  return arguments;
+}
+
 /// The runs a scene names, the longest kind first so that no core waits for it at the end.
 std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, const fs::path& folder,
                         const RunCommandOptions& options, bool share_cores) {
@@ -84,15 +103,17 @@ std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, co
     const std::string model_name = scenes::to_string(model);
     job.name = fmt::format("{} {} {}", scene.name, solver, model_name);
     job.directory = folder / (solver + "-" + model_name);
-    job.arguments = {solver, named, "--model", model_name, "-o", job.directory.string()};
-    add_settings(job.arguments, options.set);
-    if (one_thread) add_settings(job.arguments, {"mpm.threads=1"});
+    const std::vector<std::string> threads =
+        one_thread ? std::vector<std::string>{"mpm.threads=1"} : std::vector<std::string>{};
+    job.arguments = begin_or_go_on(solver, named, job.directory, threads, model, options);
     jobs.push_back(std::move(job));
   };
 #ifdef FLOWREST_HAS_FOAM
   for (const auto model : scene.runs.foam) add("foam", model, false);
 #endif
-  for (const auto model : scene.runs.mpm) add("mpm", model, share_cores && scene.mpm.threads == 0);
+  const bool one_thread =
+      share_cores && scene.mpm.threads == 0 && !scenes::gives_key(options.set, "mpm.threads");
+  for (const auto model : scene.runs.mpm) add("mpm", model, one_thread);
   return jobs;
 }
 
@@ -109,7 +130,8 @@ class Scheduler {
     while (!waiting_.empty() || !running_.empty()) {
       if (runs::InterruptGuard::count() > 0) interrupt();
       while (!waiting_.empty() && static_cast<int>(running_.size()) < at_once_) {
-        fmt::print("{}: started, in {}\n", waiting_.front().name, waiting_.front().directory.string());
+        runs::say(stdout, fmt::format("{}: started, in {}\n", waiting_.front().name,
+                                      waiting_.front().directory.string()));
         running_.push_back(std::make_unique<RunningJob>(std::move(waiting_.front()), program, logs_));
         waiting_.pop_front();
       }
@@ -123,8 +145,7 @@ class Scheduler {
  private:
   void interrupt() {
     waiting_.clear();
-    if (!std::exchange(interrupted_, true))
-      for (auto& job : running_) job->signal(SIGINT);
+    for (auto& job : running_) job->hand_on_interrupts();
     code_ = 130;
   }
 
@@ -134,7 +155,7 @@ class Scheduler {
       if (!end) return false;
       job->show_progress();
       if (!end->good()) {
-        fmt::print("{}: ended with {}\n", job->job().name, end->how());
+        runs::say(stdout, fmt::format("{}: ended with {}\n", job->job().name, end->how()));
         if (code_ == 0) code_ = end->signal ? 1 : end->exit_code;
       }
       return true;
@@ -145,7 +166,6 @@ class Scheduler {
   int at_once_;
   fs::path logs_;
   std::vector<std::unique_ptr<RunningJob>> running_;
-  bool interrupted_ = false;
   int code_ = 0;
 };
 
@@ -153,9 +173,14 @@ class Scheduler {
 /// Runs another of this program's commands, its output going where ours goes; returns its exit code.
 int call(const std::vector<std::string>& arguments, const fs::path& log) {
   runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
-  while (!process.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  bool interrupted = false;
+  while (!process.poll()) {
+    interrupted = process.hand_on_interrupts();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   std::ifstream file(log);
-  for (std::string line; std::getline(file, line);) fmt::print("{}\n", line);
+  for (std::string line; std::getline(file, line);) runs::say(stdout, line + "\n");
+  if (interrupted) return 130;
   const auto end = process.poll();
   return end->signal ? 1 : end->exit_code;
 }
@@ -167,8 +192,10 @@ int compare_runs(const scenes::Scene& scene, const std::string& named, const fs:
   int code = 0;
   if (scene.runs.exact) {
     std::vector<std::string> exact = {"exact", named, "-o", (folder / "exact").string()};
+    if (options.force) exact.push_back("--force");
     add_settings(exact, options.set);
     code = call(exact, folder / "logs" / "exact.log");
+    if (code == 130) return code;
     if (code == 0) made.push_back(folder / "exact");
   }
   std::vector<std::string> arguments = {"compare"};
@@ -186,9 +213,7 @@ Job accuracy_job(const std::string& named, const fs::path& directory, const RunC
   Job job;
   job.name = fmt::format("{} {}", fs::path(named).stem().string(), directory.filename().string());
   job.directory = directory;
-  job.arguments = {"mpm", named, "-o", directory.string()};
-  add_settings(job.arguments, options.set);
-  add_settings(job.arguments, chosen);
+  job.arguments = begin_or_go_on("mpm", named, directory, chosen, std::nullopt, options);
   return job;
 }
 
@@ -227,14 +252,25 @@ int check_accuracy(const fs::path& folder, const studies::Choice& choice, double
   return held ? 0 : 3;
 }
 
+/// What is known to reach the accuracy that is asked for.
+/// @throws scenes::SceneError where nothing is, or a setting is given that is chosen here.
+studies::Choice choice_for(const scenes::Scene& scene, const RunCommandOptions& options) {
+  const double wanted = studies::accuracy_from(options.accuracy);
+  const studies::Choice choice = studies::choose(studies::stored_knowledge(), scene, wanted);
+  for (const auto& chosen : choice.set) {
+    const std::string key = chosen.substr(0, chosen.find('='));
+    if (scenes::gives_key(options.set, key))
+      throw scenes::SceneError(
+          fmt::format("--set {}: --accuracy chooses it; allowed: every key but those it chooses", key));
+  }
+  return choice;
+}
+
 /// Runs a scene with the cheapest settings that are known to reach an accuracy, and a coarser twin that
 /// checks it.
-int run_accurately(const std::string& named, const RunCommandOptions& options) {
+int run_accurately(const scenes::Scene& scene, const std::string& named, const RunCommandOptions& options) {
   const double wanted = studies::accuracy_from(options.accuracy);
-  scenes::Overrides overrides;
-  overrides.set = options.set;
-  const scenes::Scene scene = scenes::load_scene(named, overrides);
-  const studies::Choice choice = studies::choose(studies::stored_knowledge(), scene, wanted);
+  const studies::Choice choice = choice_for(scene, options);
   fmt::print(
       "Chosen for {}: {}.\nExpected error {}, expected cost {} of CPU with the coarser twin (cells of {:g} "
       "m) that "
@@ -243,6 +279,7 @@ int run_accurately(const std::string& named, const RunCommandOptions& options) {
       compare::words::duration(choice.expected_cpu), choice.twin_cell);
   std::fflush(stdout);
   const fs::path folder = fs::path(options.output) / scene.name / "accuracy";
+  const runs::FolderLock lock(folder);
   runs::make_folder(folder / "logs");
   std::deque<Job> jobs = {accuracy_job(named, folder / "mpm", options, choice.set),
                           accuracy_job(named, folder / "mpm-coarser-twin", options, choice.twin_set)};
@@ -252,20 +289,15 @@ int run_accurately(const std::string& named, const RunCommandOptions& options) {
 }
 #endif
 
-int run_scene(const std::string& named, const RunCommandOptions& options) {
-  scenes::Overrides overrides;
-  overrides.set = options.set;
-  const scenes::Scene scene = scenes::load_scene(named, overrides);
+int run_scene(const scenes::Scene& scene, const std::string& named, const RunCommandOptions& options) {
   const fs::path folder = fs::path(options.output) / scene.name;
   const fs::path logs = folder / "logs";
+  const runs::FolderLock lock(folder);
   runs::make_folder(logs);
+  const runs::InterruptGuard guard;
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int at_once = options.jobs > 0 ? options.jobs : cores;
   auto jobs = jobs_of(scene, named, folder, options, at_once > 1);
-  if (jobs.empty() && !scene.runs.exact)
-    throw scenes::SceneError(
-        fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}",
-                    scene.path.string()));
   std::vector<fs::path> made;
   for (const auto& job : jobs) made.push_back(job.directory);
   int code = Scheduler(std::move(jobs), at_once, logs).run();
@@ -280,6 +312,27 @@ int run_scene(const std::string& named, const RunCommandOptions& options) {
   }
 #endif
   return code;
+}
+
+/// The scenes that are asked for, all of them read before the first is run.
+std::vector<scenes::Scene> scenes_of(const RunCommandOptions& options) {
+  std::vector<scenes::Scene> all;
+  const scenes::Overrides overrides = scenes::overrides_of_command_line(options.set);
+  for (const auto& named : options.scenes) {
+    const scenes::Scene& scene = all.emplace_back(scenes::load_scene(named, overrides));
+#ifdef FLOWREST_HAS_COMPARE
+    if (!options.accuracy.empty()) {
+      choice_for(scene, options);
+      continue;
+    }
+#endif
+    scenes::check_model_has_effect(scene, options.set);
+    if (scene.runs.mpm.empty() && scene.runs.foam.empty() && !scene.runs.exact)
+      throw scenes::SceneError(
+          fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}",
+                      scene.path.string()));
+  }
+  return all;
 }
 
 }  // namespace
@@ -298,15 +351,22 @@ void add_run_command(CLI::App& app) {
       "--accuracy", options->accuracy,
       "Instead, one MPM run with the cheapest settings that are known to reach this, such as 2%");
 #endif
-  command->add_option("-j,--jobs", options->jobs, "Runs at once (as many as there are cores)");
+  command->add_flag(
+      "--force", options->force,
+      "Make every run anew, whatever stands in its folder. Without it finished runs of the same "
+      "settings and version are taken as they are, and unfinished ones are gone on with");
+  command->add_option("-j,--jobs", options->jobs, "Runs at once (as many as there are cores)")
+      ->check(CLI::PositiveNumber);
   command->callback([options] {
     int code = 0;
-    for (const auto& scene : options->scenes) {
+    const auto all = scenes_of(*options);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::string& named = options->scenes[i];
 #ifdef FLOWREST_HAS_COMPARE
-      const int scene_code =
-          options->accuracy.empty() ? run_scene(scene, *options) : run_accurately(scene, *options);
+      const int scene_code = options->accuracy.empty() ? run_scene(all[i], named, *options)
+                                                       : run_accurately(all[i], named, *options);
 #else
-      const int scene_code = run_scene(scene, *options);
+      const int scene_code = run_scene(all[i], named, *options);
 #endif
       if (code == 0) code = scene_code;
       if (scene_code == 130) break;

@@ -19,18 +19,18 @@ namespace {
 void add_exact(CLI::App& app) {
   struct Arguments {
     std::string scene, output;
-    scenes::Overrides overrides;
+    std::vector<std::string> set;
     bool thin_film = false;
     std::optional<double> flocculation;
-    bool json = false;
+    bool force = false, json = false;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("exact", "Write the scene's exact or asymptotic solutions as runs");
   command->add_option("SCENE", arguments->scene, "A scene file, or the name of one in scenes/")->required();
   command->add_option("-o,--output", arguments->output,
                       "Folder that receives a run for each solution (out/SCENE/exact)");
-  command->add_option("--set", arguments->overrides.set, "Override a key: material.yield_stress=100")
-      ->take_all();
+  command->add_option("--set", arguments->set, "Override a key: material.yield_stress=100")
+      ->allow_extra_args(false);
   command->add_flag("--thin-film", arguments->thin_film,
                     "Add a slump's approach to rest in time, as a thin film of Bingham material, "
                     "with and without the pull of its plug");
@@ -38,16 +38,20 @@ void add_exact(CLI::App& app) {
       "--flocculation", arguments->flocculation,
       "Structure with which a thixotropic material comes to rest: the last flocculation_mean of a "
       "run; 0: broken down");
+  command->add_flag("--force", arguments->force, "Replace whatever runs stand in the way");
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->callback([arguments] {
-    const auto scene = scenes::load_scene(arguments->scene, arguments->overrides);
+    const auto scene =
+        scenes::load_scene(arguments->scene, scenes::overrides_of_command_line(arguments->set));
+    if (arguments->thin_film) exact::check_film(scene);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
-    auto written = exact::write_exact_runs(scene, output, arguments->flocculation);
+    const auto replace = arguments->force ? runs::Replace::anything : runs::Replace::unfinished;
+    auto written = exact::write_exact_runs(scene, output, arguments->flocculation, replace);
     if (arguments->thin_film) {
-      written.push_back(exact::write_film_run(scene, std::filesystem::path(output) / "thin-film"));
-      written.push_back(
-          exact::write_film_run(scene, std::filesystem::path(output) / "thin-film-under-plug", true));
+      const std::filesystem::path folder(output);
+      written.push_back(exact::write_film_run(scene, folder / "thin-film", false, replace));
+      written.push_back(exact::write_film_run(scene, folder / "thin-film-under-plug", true, replace));
     }
     for (const auto& run : written) {
       fmt::print("{}\n  {}\n", run.summary, run.directory.string());
@@ -110,6 +114,7 @@ void add_compare(CLI::App& app) {
     if (arguments->spread_rate_mm) arguments->options.rest_spread_rate = 1e-3 * *arguments->spread_rate_mm;
     const std::vector<std::filesystem::path> named(arguments->runs.begin(), arguments->runs.end());
     const Comparison comparison = compare_runs(find_runs(named), arguments->options);
+    const runs::FolderLock lock(arguments->output);
     write_comparison(comparison, arguments->output);
     if (!arguments->no_figures) try_figures(comparison, arguments->output);
     if (!arguments->clip.empty())

@@ -481,7 +481,7 @@ TEST_F(ComparisonTest, AnLBoxHasAnArrestedShapeForTheStructureItEndsWith) {
   const Comparison comparison = compared();
   EXPECT_THAT(text(comparison), HasSubstr("mm (exact, arrested, flocculation 0.5)"));
   // Broken down, it reaches the end.
-  exact::write_exact_runs(box(), folder / "exact", 0.0);
+  exact::write_exact_runs(box(), folder / "exact", 0.0, runs::Replace::anything);
   EXPECT_THAT(text(compared()), HasSubstr("600 mm, 35 mm high at the end (exact, arrested, flocculation 0)"));
 }
 

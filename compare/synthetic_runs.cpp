@@ -39,7 +39,7 @@ void write(const Slump& slump, const std::filesystem::path& directory) {
   }
   overrides.set.insert(overrides.set.end(), slump.set.begin(), slump.set.end());
   const auto scene = scenes::load_scene("roussel-slump", overrides);
-  runs::RunWriter writer(directory, scene, slump.solver);
+  runs::RunWriter writer(directory, scene, slump.solver, runs::Replace::anything);
   writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3", "shear_rate_p99_1_s"});
   const double volume = scene.slump().volume();
   const auto height_of = [&](double radius) { return 15.0 * volume / (8.0 * pi * radius * radius); };
@@ -83,7 +83,7 @@ void write(const Duct& duct, const std::filesystem::path& directory) {
                              height,
                              scene.forces.body_force.front().second};
   const double step = scene.forces.body_force.back().first;
-  runs::RunWriter writer(directory, scene, "mpm");
+  runs::RunWriter writer(directory, scene, "mpm", runs::Replace::anything);
   writer.history_columns({"time_s", "plug_velocity_m_s", "mean_velocity_m_s"});
   for (int i = 0; i <= 400; ++i) {
     const double time = 0.05 * i;
@@ -109,7 +109,7 @@ void write(const Box& box, const std::filesystem::path& directory) {
   overrides.set = box.set;
   const auto scene = scenes::load_scene("mix-b-lbox-sf600", overrides);
   const auto& geometry = scene.l_box();
-  runs::RunWriter writer(directory, scene, "mpm");
+  runs::RunWriter writer(directory, scene, "mpm", runs::Replace::anything);
   writer.history_columns({"time_s", "front_mm", "end_height_mm", "start_height_mm", "flocculation_mean"});
   for (int i = 0; i * 0.05 <= box.end + 1e-9; ++i) {
     const double time = 0.05 * i;
@@ -137,7 +137,7 @@ void write(const Funnel& funnel, const std::filesystem::path& directory) {
   overrides.model = funnel.model;
   overrides.set = funnel.set;
   const auto scene = scenes::load_scene("mix-a-vfunnel-sf0", overrides);
-  runs::RunWriter writer(directory, scene, "mpm");
+  runs::RunWriter writer(directory, scene, "mpm", runs::Replace::anything);
   writer.history_columns({"time_s", "discharged_fraction", "thinnest_sight_mm"});
   for (int i = 0; i <= 80; ++i) {
     const double time = 0.05 * i, left = std::max(0.0, 1.0 - time / funnel.empty);

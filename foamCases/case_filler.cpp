@@ -229,19 +229,13 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text << std::flush;
-  if (!file) throw runs::RunError(fmt::format("{}: cannot be written", path.string()));
-}
-
 /// Puts the cone into a quarter's initial field: no utility of OpenFOAM cuts cells by a cone.
 void write_initial_fraction(const Scene& scene, const fs::path& path) {
   std::string text = text_of(path);
   const auto begin = text.find("internalField"), end = text.find(';', begin);
   if (begin == std::string::npos || end == std::string::npos)
     throw runs::RunError(fmt::format("{}: it has no internalField to put the cone into", path.string()));
-  write_text(path, text.replace(begin, end - begin, initial_fraction(scene)));
+  runs::write_atomically(path, text.replace(begin, end - begin, initial_fraction(scene)));
 }
 
 }  // namespace
@@ -335,6 +329,13 @@ fs::path cases_folder() {
   return FLOWREST_FOAM_CASES_FOLDER;
 }
 
+std::string solved_components(const Scene& scene) {
+  return scene.geometry.dimension == scenes::Dimension::quarter ||
+                 scene.geometry.dimension == scenes::Dimension::half
+             ? "xyz"
+             : "xz";
+}
+
 double sample_interval(const Scene& scene) {
   return std::min(scene.output.history_interval, scene.output.profile_interval);
 }
@@ -351,7 +352,7 @@ std::string scene_parameters(const Scene& scene, bool plug_in, int ranks) {
 }
 
 void fill_parameters(const Scene& scene, const fs::path& directory, bool plug_in, int ranks) {
-  write_text(directory / "sceneParameters", scene_parameters(scene, plug_in, ranks));
+  runs::write_atomically(directory / "sceneParameters", scene_parameters(scene, plug_in, ranks));
 }
 
 void fill_case(const Scene& scene, const fs::path& directory, const std::optional<fs::path>& plug_in,
@@ -372,10 +373,11 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
                  fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     fs::remove_all(directory / "constant" / "polyMesh");
     if (is_quarter(scene)) write_initial_fraction(scene, directory / "0.orig" / "alpha.concrete");
-    if (is_vessel(scene)) write_text(directory / "system" / "blockMeshDict", vessel_block_mesh(scene));
+    if (is_vessel(scene))
+      runs::write_atomically(directory / "system" / "blockMeshDict", vessel_block_mesh(scene));
     const fs::path baffles = directory / "system" / "createBafflesDict";
     fs::remove(baffles);
-    if (gate_of(scene)) write_text(baffles, gate_baffles(scene));
+    if (gate_of(scene)) runs::write_atomically(baffles, gate_baffles(scene));
     fs::remove_all(directory / "0");
     fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
     fs::remove(directory / plug_in_link);
@@ -384,7 +386,7 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
     throw runs::RunError(fmt::format("{}: the case cannot be copied: {}", directory.string(), fault.what()));
   }
   fill_parameters(scene, directory, plug_in.has_value(), ranks);
-  write_text(directory / "case.foam", "");
+  runs::write_atomically(directory / "case.foam", "");
 }
 
 }  // namespace flowrest::foam

@@ -35,6 +35,9 @@ std::string gate_baffles(const scenes::Scene&);
 /// Cells of the scene's mesh.
 std::size_t mesh_cells(const scenes::Scene&);
 
+/// Components of the velocity that a case solves for: those whose residuals tell of noise.
+std::string solved_components(const scenes::Scene&);
+
 /// Simulated seconds between the samples interFoam writes for the gauges.
 double sample_interval(const scenes::Scene&);
 

@@ -1,11 +1,14 @@
 #include "foamCases/commands.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "foamCases/foam_run.h"
+#include "runs/console.h"
+#include "runs/earlier_run.h"
+#include "runs/process.h"
+#include "runs/run_folder.h"
 
 namespace flowrest::foam {
 
@@ -17,7 +20,8 @@ struct FoamArguments {
   std::vector<std::string> set;
   std::string directory;
   std::string resume;
-  int ranks = 1;
+  std::optional<int> ranks;
+  bool force = false;
   bool json = false;
   bool quiet = false;
 };
@@ -26,20 +30,32 @@ struct FoamArguments {
 RunOutcome run_or_resume(const FoamArguments& arguments, RunOptions& options) {
   if (!arguments.resume.empty()) {
     options.directory = arguments.resume;
-    return resume_run(options);
+    return resume_run(options, arguments.set);
   }
-  scenes::Overrides overrides{arguments.set, std::nullopt};
-  if (!arguments.model.empty()) overrides.model = scenes::model_from_name(arguments.model);
-  const auto scene = scenes::load_scene(arguments.scene, overrides);
+  const auto scene =
+      scenes::load_scene(arguments.scene, scenes::overrides_of_command_line(arguments.set, arguments.model));
   options.directory = arguments.directory.empty() ? std::filesystem::path("out") / scene.name /
                                                         ("foam-" + scenes::to_string(scene.material.model))
                                                   : std::filesystem::path(arguments.directory);
   return run_scene(scene, options);
 }
 
+/// @throws scenes::SceneError, runs::RunError where an option would be without effect.
+void check_options(const FoamArguments& arguments) {
+  if (!arguments.model.empty()) scenes::model_from_name(arguments.model);
+  if (arguments.resume.empty()) return;
+  std::vector<std::string> without_effect;
+  if (!arguments.model.empty()) without_effect.emplace_back("--model");
+  if (!arguments.directory.empty()) without_effect.emplace_back("--output");
+  runs::refuse_beside_resume(without_effect, "--set, --ranks, --json, --quiet");
+}
+
 void run_command(const FoamArguments& arguments) {
+  check_options(arguments);
   RunOptions options;
+  const runs::InterruptGuard guard;
   options.quiet = arguments.quiet;
+  options.force = arguments.force;
   options.ranks = arguments.ranks;
   const auto outcome = run_or_resume(arguments, options);
   if (arguments.json) {
@@ -49,13 +65,13 @@ void run_command(const FoamArguments& arguments) {
                                 {"verdict", outcome.verdict},
                                 {"time_s", outcome.time}};
     line.update(outcome.gauges);
-    fmt::print("{}\n", line.dump());
+    runs::say(stdout, line.dump() + "\n");
   } else {
-    fmt::print("{}\n", options.directory.string());
+    runs::say(stdout, options.directory.string() + "\n");
   }
   // As the shell does for a program that Ctrl-C ended.
   if (outcome.status == runs::Status::interrupted) {
-    fmt::print(stderr, "{}\n", outcome.reason);
+    runs::say(stderr, outcome.reason + "\n");
     throw CLI::RuntimeError(130);
   }
 }
@@ -77,10 +93,14 @@ void add_commands(CLI::App& app) {
   auto* resume =
       command
           ->add_option("--resume", arguments->resume,
-                       "Go on with the run in this directory from its latest state; needs no scene")
+                       "Go on with the run in this directory from its latest state; needs no scene. --set "
+                       "time.end=... prolongs it, finished or not")
           ->excludes(scene);
-  command->add_option("--ranks", arguments->ranks, "Ranks to solve with, under mpirun (1: without)")
+  command
+      ->add_option("--ranks", arguments->ranks,
+                   "Ranks to solve with, under mpirun (1: without; with --resume, as many as the run had)")
       ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", arguments->force, runs::force_help)->excludes(resume);
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->add_flag("--quiet", arguments->quiet, "Print no progress");
   command->callback([arguments, scene, resume] {

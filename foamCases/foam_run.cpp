@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -23,8 +24,12 @@
 #include "foamCases/solver_log.h"
 #include "foamCases/vessel_mesh.h"
 #include "foamCases/vessel_sampler.h"
+#include "runs/console.h"
+#include "runs/machine.h"
 #include "runs/process.h"
 #include "runs/progress.h"
+#include "runs/run_folder.h"
+#include "scenes/cost.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::foam {
@@ -40,6 +45,8 @@ constexpr double poll_interval = 0.05;  // s
 /// A step this much below the largest, this often in succession, gets nowhere.
 constexpr double collapsed_step = 1e-5;
 constexpr int collapsed_steps = 20;
+
+constexpr const char* shear_rates_header = "time_s,shear_rate_1_s\n";
 
 /// A program and what it is called with.
 struct Call {
@@ -99,14 +106,6 @@ std::map<std::string, std::string> openfoam_environment() {
   return environment;
 }
 
-/// Components of the velocity that a case solves for: those whose residuals tell of noise.
-std::string components(const scenes::Scene& scene) {
-  return scene.geometry.dimension == scenes::Dimension::quarter ||
-                 scene.geometry.dimension == scenes::Dimension::half
-             ? "xyz"
-             : "xz";
-}
-
 /// Which of the scene's walls the case does not have, in words; empty where it has them all.
 std::string walls_differ(const scenes::Scene& scene) {
   if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity)
@@ -139,14 +138,13 @@ void remove_parts(const fs::path& case_directory) {
 /// One run from the filled case, or from the state it is gone on from, to the summary.
 class CaseRun {
  public:
-  CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs,
+  CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs, runs::RunWriter writer,
           const std::optional<RunState>& state = std::nullopt)
       : scene_(scene),
         options_(options),
         programs_(std::move(programs)),
         state_(state),
-        writer_(state ? runs::RunWriter::resume(options.directory, scene, state->time)
-                      : runs::RunWriter(options.directory, scene, "foam")),
+        writer_(std::move(writer)),
         case_(options.directory / "case"),
         plug_in_(plug_in_for(scene)),
         rest_(scene),
@@ -157,19 +155,34 @@ class CaseRun {
     const runs::InterruptGuard guard;
     try {
       begin();
-      if (prepare()) solve();
+      if (status_ == Status::at_rest) {
+        sampler_->sample_before(std::numeric_limits<double>::infinity());
+      } else if (prepare()) {
+        solve();
+      }
       put_together();
-    } catch (const std::exception& fault) {
-      fail(fault.what());
+      // So that it can be prolonged.
+      if (status_ == Status::end_time) complete_last_state(case_, last_step_, time_step_before_, steps_);
+    } catch (const std::exception&) {
+      const runs::Failure failure = runs::failure_at_hand(scenes::estimate_foam(scene_).cost.memory);
+      fail(failure.reason, failure.fault);
     }
     summarise();
+    if (status_ == Status::failed) raise();
     return {status_, reason_, verdict(), time(), gauges()};
   }
 
  private:
+  int ranks() const { return options_.ranks.value_or(1); }
   double time() const { return sampler_ ? sampler_->time() : 0.0; }
   nlohmann::ordered_json gauges() const {
     return sampler_ ? sampler_->summary() : nlohmann::ordered_json::object();
+  }
+  [[noreturn]] void raise() const {
+    const std::string what =
+        fmt::format("{}; the logs are in {}", reason_, (options_.directory / "case").string());
+    if (fault_ == runs::Fault::machine) throw runs::MachineError(what);
+    throw runs::NumericsError(what);
   }
   /// Of the noise, and of what the flow must keep.
   std::string verdict() const {
@@ -179,20 +192,37 @@ class CaseRun {
   }
   std::size_t cells() const { return sampler_ ? sampler_->cells() : 0; }
 
-  /// The first reason is the one that counts.
-  void fail(const std::string& reason) {
+  /// The first reason is the one that counts. Programs that find no room on the disk leave half a file, or
+  /// end without a word.
+  void fail(const std::string& reason, runs::Fault fault = runs::Fault::numerics) {
     if (status_ == Status::failed) return;
     status_ = Status::failed;
+    fault_ = fault;
     reason_ = reason;
+    if (fault == runs::Fault::machine || !runs::disk_is_full(options_.directory)) return;
+    fault_ = runs::Fault::machine;
+    reason_ += "; the disk is full";
+  }
+
+  /// A program that ended badly did so by itself, or because the machine failed it, or because somebody who
+  /// ends us, too, was quicker to end it.
+  void fail_of(const std::string& program, const runs::ProcessEnd& end, const SolverLog& log) {
+    if (runs::InterruptGuard::count() > 0) {
+      if (status_ == Status::running) status_ = Status::interrupted;
+      return;
+    }
+    const std::string fault = log.fault().empty() ? log.machine_fault() : log.fault();
+    fail(fmt::format("{} ended with {}{}", program, end.how(), fault.empty() ? "" : ": " + fault),
+         end.from_outside() || !log.machine_fault().empty() ? runs::Fault::machine : runs::Fault::numerics);
   }
 
   void begin() {
-    if (!state_) fill_case(scene_, case_, plug_in_, options_.ranks);
-    sampler_ = make_sampler(scene_, CaseFields(case_, options_.ranks), writer_, plug_in_.has_value());
+    if (!state_) fill_case(scene_, case_, plug_in_, ranks());
+    sampler_ = make_sampler(scene_, CaseFields(case_, ranks()), writer_, plug_in_.has_value());
     if (state_) go_on();
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();
-    info["ranks"] = options_.ranks;
+    info["ranks"] = ranks();
     if (const std::string differ = walls_differ(scene_); !differ.empty()) info["walls_differ"] = differ;
     writer_.write();
   }
@@ -201,9 +231,26 @@ class CaseRun {
   void go_on() {
     if (const fs::path history = options_.directory / "history.csv"; fs::exists(history))
       sampler_->continue_from(runs::read_csv(history));
-    for (const auto& step : state_->steps) tally(step);
+    for (const auto& step : state_->steps) {
+      tally(step);
+      if (!(step.time < state_->last_row + 0.5 * step.time_step)) sampler_->note(step);
+    }
+    take_up_rest();
     cpu_by_program_ = state_->cpu_by_program;
     wall_before_ = state_->wall;
+  }
+
+  void take_up_rest() {
+    const auto& samples = state_->shear_rates;
+    std::string kept = shear_rates_header;
+    for (std::size_t row = 0; row < samples.rows(); ++row) {
+      // As while it ran: what came after its rest, while the solver ended, does not count.
+      if (!rest_.at_rest()) rest_.add(samples.columns[0][row], samples.columns[1][row]);
+      kept += fmt::format("{},{}\n", samples.columns[0][row], samples.columns[1][row]);
+      last_shear_rate_time_ = samples.columns[0][row];
+    }
+    runs::write_atomically(case_ / shear_rates_file, kept);
+    if (rest_.at_rest()) status_ = Status::at_rest;
   }
 
   /// Mesh and initial fields, and their parts. False where it went wrong or was interrupted.
@@ -215,17 +262,20 @@ class CaseRun {
 
   /// One case again, whatever became of the run; where that fails the parts stay.
   void put_together() {
-    if (!programs_.reconstruct || !fs::exists(case_ / "processor0")) return;
+    if (!programs_.reconstruct || !fs::exists(case_ / "processor0") || fault_ == runs::Fault::machine) return;
+    const int asked = runs::InterruptGuard::count();
     const fs::path log_path = case_ / "log.reconstructPar";
     runs::Process process(programs_.reconstruct->program, programs_.reconstruct->arguments, case_, log_path,
                           openfoam_environment());
-    while (!process.wait(poll_interval)) {
-    }
+    while (!process.wait(poll_interval))
+      if (runs::InterruptGuard::count() > asked) return;
     cpu_by_program_["reconstructPar"] += process.poll()->cpu_s;
     if (process.poll()->good()) {
       remove_parts(case_);
-    } else if (status_ != Status::failed) {
-      fail(fmt::format("reconstructPar ended with {}", process.poll()->how()));
+    } else {
+      SolverLog log;
+      log.feed(FileTail(log_path).read());
+      fail_of("reconstructPar", *process.poll(), log);
     }
   }
 
@@ -242,8 +292,7 @@ class CaseRun {
     if (process.poll()->good()) return true;
     SolverLog log;
     log.feed(FileTail(log_path).read());
-    fail(fmt::format("{} ended with {}{}", name, process.poll()->how(),
-                     log.fault().empty() ? "" : ": " + log.fault()));
+    fail_of(name, *process.poll(), log);
     return false;
   }
 
@@ -277,8 +326,9 @@ class CaseRun {
     log_.feed(text);
     for (const auto& step : log_.take_steps()) count(step);
     try {
-      sampler_->sample_before(running ? log_.time_begun().value_or(0.0)
-                                      : std::numeric_limits<double>::infinity());
+      sampler_->sample_before(
+          running ? log_.time_begun().value_or(0.0) : std::numeric_limits<double>::infinity(),
+          [this] { follow_rest(); });
     } catch (const FieldError& fault) {
       // The last directory of a solver that was cut off may be half written; in a running one it must be
       // whole.
@@ -300,6 +350,8 @@ class CaseRun {
   void tally(const SolverStep& step) {
     monitor_.add(step);
     ++steps_;
+    time_step_before_ = last_step_.time_step;
+    last_step_ = step;
     max_courant_ = std::max(max_courant_, step.courant);
     max_time_step_ = std::max(max_time_step_, step.time_step);
   }
@@ -307,12 +359,23 @@ class CaseRun {
   /// Ends a run that can give no answer any more.
   void watch() {
     if (const auto fault = log_.fault(); !fault.empty())
-      fail(fmt::format("interFoam at {:.4g} s: {}", log_.time_begun().value_or(0.0), fault));
+      fail(fmt::format("interFoam at {:.4g} s: {}", log_.time_begun().value_or(0.0), fault),
+           log_.machine_fault().empty() ? runs::Fault::numerics : runs::Fault::machine);
     if (const auto fault = sampler_->fault(); !fault.empty()) fail(fault);
-    if (sampler_->time() > 0.0 && status_ == Status::running) {
-      rest_.add(sampler_->time(), sampler_->shear_rate());
-      if (rest_.at_rest()) status_ = Status::at_rest;
-    }
+  }
+
+  /// Takes in the last sample, and keeps it for whoever goes on with the run.
+  void follow_rest() {
+    if (!(sampler_->time() > last_shear_rate_time_)) return;
+    last_shear_rate_time_ = sampler_->time();
+    const fs::path path = case_ / shear_rates_file;
+    std::ofstream file(path, std::ios::app);
+    if (file.tellp() == 0) file << shear_rates_header;
+    file << fmt::format("{},{}\n", sampler_->time(), sampler_->shear_rate()) << std::flush;
+    if (!file) throw runs::RunError(fmt::format("{}: cannot be written", path.string()));
+    if (status_ != Status::running) return;
+    rest_.add(sampler_->time(), sampler_->shear_rate());
+    if (rest_.at_rest()) status_ = Status::at_rest;
   }
 
   /// Asks the solver to end its step and write; insists where it does not, or where the user asks again.
@@ -333,7 +396,7 @@ class CaseRun {
     cpu_by_program_["interFoam"] += end.cpu_s;
     if (status_ != Status::running) return;
     if (!end.good()) {
-      fail(fmt::format("interFoam ended with {}", end.how()));
+      fail_of("interFoam", end, log_);
     } else if (!log_.ended() || steps_ == 0) {
       fail("interFoam stopped before its end time");
     } else {
@@ -348,12 +411,15 @@ class CaseRun {
       reason_ = fmt::format("interrupted at {:.4g} s; go on with: flowrest foam --resume {}", time(),
                             options_.directory.string());
     write_info(wall);
-    writer_.finish(status_, reason_, verdict());
+    if (status_ == Status::failed)
+      writer_.fail({fault_, reason_}, verdict());
+    else
+      writer_.finish(status_, reason_, verdict());
     progress_.finish(
         fmt::format("{} at {:.4g} s, {}, {}; {} steps, {:.3g} steps/s, {:.3g} cell-steps/s, {:.4g} "
                     "simulated s an hour",
                     runs::to_string(status_), time(), sampler_ ? sampler_->progress() : "nothing run",
-                    verdict(), steps_, static_cast<double>(steps_) / wall,
+                    writer_.info()["verdict"].get<std::string>(), steps_, static_cast<double>(steps_) / wall,
                     static_cast<double>(steps_ * cells()) / wall, 3600.0 * time() / wall));
   }
 
@@ -375,7 +441,10 @@ class CaseRun {
     info["growth_to_come"] = growth ? Json(*growth) : Json();
     const auto rest_time = rest_.rest_time();
     info["rest_time_s"] = rest_time ? Json(*rest_time) : Json();  // a fluid has none
-    info.update(gauges());
+    const auto last = gauges();
+    info.update(last);
+    info["gauges"] = Json::array();
+    for (const auto& gauge : last.items()) info["gauges"].push_back(gauge.key());
     info["courant_max"] = max_courant_;
     info["time_step_max_s"] = max_time_step_;
     info["time_step_rule"] = step_rule(scene_, plug_in_.has_value());
@@ -399,11 +468,15 @@ class CaseRun {
   RestMonitor rest_;
   runs::Progress progress_;
   std::unique_ptr<Sampler> sampler_;
-  SolverLog log_{components(scene_)};
+  SolverLog log_{solved_components(scene_)};
   NoiseMonitor monitor_{scene_.body_height()};
   Status status_ = Status::running;
+  runs::Fault fault_ = runs::Fault::other;
   std::string reason_;
   std::size_t steps_ = 0;
+  SolverStep last_step_;
+  double time_step_before_ = 0.0;      ///< s, of the step before that
+  double last_shear_rate_time_ = 0.0;  ///< s
   double max_courant_ = 0.0;
   double max_time_step_ = 0.0;
   int small_steps_ = 0;
@@ -419,47 +492,91 @@ void check_ranks(const scenes::Scene& scene, int ranks) {
         fmt::format("{}: --ranks {}: a duct is one column of cells; allowed: 1", scene.path.string(), ranks));
 }
 
-RunOutcome finished(const RunOutcome& outcome, const RunOptions& options) {
-  if (outcome.status == Status::failed)
-    throw runs::NumericsError(
-        fmt::format("{}; the logs are in {}", outcome.reason, (options.directory / "case").string()));
+/// Makes one case of a decomposed one that was cut off before its parts were put together.
+void join_parts(const fs::path& case_directory, const StateTime& latest) {
+  remove_later_times(case_directory, latest);
+  const fs::path log = case_directory / "log.reconstructPar";
+  runs::Process process(needed_program("reconstructPar"), {"-newTimes"}, case_directory, log,
+                        openfoam_environment());
+  while (!process.wait(poll_interval))
+    if (runs::InterruptGuard::count() > 0)
+      throw runs::Interrupted("interrupted before the run was gone on with");
+  if (!process.poll()->good())
+    throw runs::RunError(
+        fmt::format("{}: its parts cannot be put together: reconstructPar ended with {} ({})",
+                    case_directory.string(), process.poll()->how(), log.string()));
+  remove_parts(case_directory);
+}
+
+/// What a finished run came to.
+RunOutcome outcome_of(const Json& info) {
+  RunOutcome outcome;
+  outcome.status = *runs::status_from(info.value("status", ""));
+  outcome.reason = info.value("reason", "");
+  outcome.verdict = info.value("verdict", "");
+  outcome.time = info.value("time_reached_s", 0.0);
+  for (const auto& gauge : info.value("gauges", Json::array()))
+    outcome.gauges[gauge.get<std::string>()] = info.value(gauge.get<std::string>(), Json());
   return outcome;
+}
+
+/// Runs a scene from its start in the folder that `open` takes for it.
+template <class Open>
+RunOutcome begin_run(const scenes::Scene& given, const RunOptions& options, Open open) {
+  // What is missing is said before anything is written.
+  const auto plug_in = plug_in_for(given);
+  const scenes::Scene scene = settled(given, plug_in.has_value());
+  const int ranks = options.ranks.value_or(1);
+  check_supported(scene);
+  check_ranks(scene, ranks);
+  const Programs programs = needed_programs(scene, ranks);
+  runs::RunFolder folder = open(scene, Json{{"laws", plug_in ? "plug-in" : "built-in"}});
+  if (folder.is_finished()) {
+    if (!options.quiet) runs::say(stderr, folder.finished_words() + "\n");
+    return outcome_of(folder.earlier());
+  }
+  return CaseRun(scene, options, programs, runs::RunWriter(std::move(folder))).run();
 }
 
 }  // namespace
 
-RunOutcome run_scene(const scenes::Scene& given, const RunOptions& options) {
-  // What is missing is said before anything is written.
-  const scenes::Scene scene = settled(given, plug_in_for(given).has_value());
-  check_supported(scene);
-  check_ranks(scene, options.ranks);
-  return finished(CaseRun(scene, options, needed_programs(scene, options.ranks)).run(), options);
+RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
+  return begin_run(scene, options, [&](const scenes::Scene& settled, const Json& beside) {
+    return runs::RunFolder(options.directory, settled, "foam",
+                           options.force ? runs::Replace::anything : runs::Replace::failed, beside);
+  });
 }
 
-RunOutcome resume_run(const RunOptions& options) {
-  const EarlierRun earlier = read_earlier_run(options.directory);
-  check_ranks(earlier.scene, options.ranks);
+RunOutcome resume_run(const RunOptions& given, const std::vector<std::string>& set) {
+  read_earlier_run(given.directory, set);
+  runs::FolderLock lock(given.directory);
+  // Once more: whoever held it may have gone on with it.
+  const EarlierRun earlier = read_earlier_run(given.directory, set);
+  RunOptions options = given;
+  options.ranks = given.ranks.value_or(earlier.ranks);
+  check_ranks(earlier.scene, *options.ranks);
   plug_in_for(earlier.scene);
-  const Programs programs = needed_programs(earlier.scene, options.ranks);
+  const Programs programs = needed_programs(earlier.scene, *options.ranks);
   const fs::path case_directory = options.directory / "case";
-  if (CaseFields::ranks_in(case_directory) > 1) {
-    // It was cut off before its parts were put together.
-    remove_cut_off_times(case_directory, earlier.scene);
-    const fs::path log = case_directory / "log.reconstructPar";
-    runs::Process process(needed_program("reconstructPar"), {"-newTimes"}, case_directory, log,
-                          openfoam_environment());
-    while (!process.wait(poll_interval)) {
-    }
-    if (!process.poll()->good())
-      throw runs::RunError(
-          fmt::format("{}: its parts cannot be put together: reconstructPar ended with {} ({})",
-                      case_directory.string(), process.poll()->how(), log.string()));
-    remove_parts(case_directory);
-  }
-  const auto state = latest_state(options.directory, earlier);
-  if (!state) return run_scene(earlier.scene, options);
-  fill_parameters(earlier.scene, case_directory, earlier.plug_in, options.ranks);
-  return finished(CaseRun(earlier.scene, options, programs, state).run(), options);
+  const auto latest = latest_whole_time(case_directory, earlier);
+  if (!latest && !earlier.run.finished())
+    return begin_run(earlier.scene, options, [&](const scenes::Scene& settled, const Json& beside) {
+      return runs::RunFolder(std::move(lock), settled, "foam", runs::Replace::anything, beside);
+    });
+  if (!latest)
+    throw runs::RunError(
+        fmt::format("{}: this run is finished, and its case holds no whole state from which it could be "
+                    "prolonged; run it anew, in another folder",
+                    options.directory.string()));
+  check_case(case_directory, earlier);
+  if (earlier.scene.time.end != earlier.run.scene.time.end)
+    runs::check_end(earlier.run, earlier.scene, latest->time);
+  if (CaseFields::ranks_in(case_directory) > 1) join_parts(case_directory, *latest);
+  const RunState state = take_up(options.directory, earlier, *latest);
+  fill_parameters(earlier.scene, case_directory, earlier.plug_in, *options.ranks);
+  auto writer = runs::RunWriter::resume(std::move(lock), earlier.scene,
+                                        {state.time, state.last_row, state.last_profile});
+  return CaseRun(earlier.scene, options, programs, std::move(writer), state).run();
 }
 
 }  // namespace flowrest::foam

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
@@ -12,8 +14,10 @@ namespace flowrest::foam {
 /// How a run is made.
 struct RunOptions {
   std::filesystem::path directory;  ///< of the run; the case goes into directory/case
-  int ranks = 1;                    ///< above 1: decomposed, under mpirun
+  /// Above 1: decomposed, under mpirun. One unless given; where a run is gone on with, as many as it had.
+  std::optional<int> ranks = std::nullopt;
   bool quiet = false;
+  bool force = false;   ///< replace whatever run stands in the directory
   double grace = 60.0;  ///< s, that a solver asked to stop has to end its step and write
 };
 
@@ -26,16 +30,20 @@ struct RunOutcome {
   nlohmann::ordered_json gauges;  ///< the last ones, by their names in run.json
 };
 
-/// Fills the scene's case, runs it, gauges it while it runs and leaves a run directory.
-/// @throws scenes::SceneError where the scene cannot be run, runs::MissingProgram without OpenFOAM (both
-/// before anything is written), runs::NumericsError where the run failed (the run directory stays, with the
-/// reason).
+/// Fills the scene's case, runs it, gauges it while it runs and leaves a run directory. A finished run of the
+/// same settings and version is taken as it is.
+/// @throws scenes::SceneError where the scene cannot be run, runs::MissingProgram without OpenFOAM,
+/// runs::RunError where the directory may not be written (see runs::RunFolder), all before anything is
+/// written; runs::NumericsError where the run failed and runs::MachineError where the machine did (the run
+/// directory stays, with the reason).
 RunOutcome run_scene(const scenes::Scene&, const RunOptions&);
 
-/// Goes on with the run in options.directory from its latest whole state, or from the start where there is
-/// none.
-/// @throws runs::RunError where that is no run of this solver, has come to its end, or its case is not the
-/// one that `flowrest foam` filled; else as run_scene.
-RunOutcome resume_run(const RunOptions&);
+/// Goes on with the run in options.directory from its latest whole state, under its settings with `set` laid
+/// over them: a later time.end, which prolongs a finished run, and time.stop_at_rest=false. A run that was
+/// stopped before its first state begins anew.
+/// @throws runs::RunError where that is no run of this solver, is finished and not prolonged, its case is not
+/// the one that `flowrest foam` filled, or a setting may not change; nothing is written then. Else as
+/// run_scene.
+RunOutcome resume_run(const RunOptions&, const std::vector<std::string>& set = {});
 
 }  // namespace flowrest::foam

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <fstream>
 
+#include "foamCases/sampler.h"
 #include "foamCases/test_interrupt.h"
 #include "foamCases/test_scene.h"
 
@@ -63,10 +64,88 @@ class FakeOpenFoam : public ::testing::Test {
     return "no failure";
   }
 
+  /// The same where the machine is at fault.
+  std::string machine_failure() {
+    try {
+      run_scene(scene_, options_);
+    } catch (const runs::MachineError& error) {
+      const auto run = runs::read_run(options_.directory);
+      EXPECT_EQ(run.info["status"], "failed");
+      EXPECT_EQ(run.info["failure"], "machine");
+      EXPECT_EQ(run.info["verdict"], "unjudged: the machine failed before the run's end");
+      EXPECT_THAT(error.what(), HasSubstr(run.info["reason"].get<std::string>()));
+      return error.what();
+    } catch (const runs::NumericsError& error) {
+      return std::string("the numerics: ") + error.what();
+    }
+    return "no failure";
+  }
+
   testing::TemporaryFolder folder_;
   scenes::Scene scene_;
   RunOptions options_;
 };
+
+TEST_F(FakeOpenFoam, AFullDiskIsTheMachinesFault) {
+  program("interFoam", step(0.5, 0.5) + "echo 'interFoam: write error: No space left on device'\nexit 1");
+  EXPECT_THAT(machine_failure(),
+              HasSubstr("interFoam ended with exit code 1: interFoam: write error: No space"));
+  program("interFoam", step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  program("setFields", "echo 'cannot write: Disk quota exceeded'\nexit 1");
+  options_.force = true;
+  EXPECT_THAT(machine_failure(), HasSubstr("setFields ended with exit code 1: cannot write: Disk quota"));
+}
+
+TEST_F(FakeOpenFoam, ASolverThatTheSystemKillsDidNotDiverge) {
+  program("interFoam", step(0.5, 0.5) + "kill -KILL $$");
+  EXPECT_THAT(machine_failure(), HasSubstr("interFoam ended with signal 9 (Killed)"));
+}
+
+TEST_F(FakeOpenFoam, WhoeverEndsUsMayEndTheSolverFirst) {
+  // A scheduler asks every process of a job at once.
+  program("interFoam", step(0.5, 0.5) + "kill -TERM $PPID; kill -TERM $$");
+  EXPECT_EQ(run_scene(scene_, options_).status, runs::Status::interrupted);
+  EXPECT_EQ(runs::read_run(options_.directory).info["status"], "interrupted");
+}
+
+TEST_F(FakeOpenFoam, ARunThatFailedIsNotSound) {
+  std::string steps;
+  for (int i = 1; i <= 400; ++i) steps += step(0.001 * i, 0.001);
+  program("interFoam", steps + "kill -SEGV $$");
+  EXPECT_THAT(failure(), HasSubstr("interFoam ended with signal 11"));
+  EXPECT_THAT(runs::read_run(options_.directory).info["verdict"].get<std::string>(), HasSubstr("noisy: "));
+}
+
+TEST_F(FakeOpenFoam, AFinishedRunIsTakenAsItIs) {
+  program("interFoam", step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  const auto first = run_scene(scene_, options_);
+  program("interFoam", "exit 1");
+  const auto second = run_scene(scene_, options_);
+  EXPECT_EQ(second.status, runs::Status::end_time);
+  EXPECT_EQ(second.verdict, first.verdict);
+  EXPECT_EQ(second.time, first.time);
+  EXPECT_EQ(second.gauges, first.gauges);
+  options_.force = true;
+  EXPECT_THAT(failure(), HasSubstr("interFoam ended with exit code 1"));
+}
+
+TEST_F(FakeOpenFoam, AFolderThatSomebodyElseWritesIntoIsLeftAlone) {
+  program("interFoam", step(0.5, 0.5) + "kill -SEGV $$");
+  failure();
+  const std::string info = testing::text_of(options_.directory / "run.json");
+  const runs::FolderLock other(options_.directory);
+  options_.force = true;
+  for (const auto& attempt :
+       {run_scene, +[](const scenes::Scene&, const RunOptions& o) { return resume_run(o); }})
+    try {
+      attempt(scene_, options_);
+      ADD_FAILURE() << "it wrote";
+    } catch (const runs::RunError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("is writing here"));
+    }
+  EXPECT_EQ(testing::text_of(options_.directory / "run.json"), info);
+  EXPECT_TRUE(fs::exists(options_.directory / "case" / "log.interFoam"));
+}
 
 TEST_F(FakeOpenFoam, ARunThatEndsIsDone) {
   program("interFoam", "echo 'Build  : OPENFOAM=fake'\n" + step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
@@ -172,12 +251,12 @@ TEST_F(FakeOpenFoam, AnotherCaseIsLeftAlone) {
 }
 
 /// What --resume says of a folder.
-std::string refusal_to_resume(const fs::path& directory) {
+std::string refusal_to_resume(const fs::path& directory, const std::vector<std::string>& set = {}) {
   RunOptions options;
   options.directory = directory;
   options.quiet = true;
   try {
-    resume_run(options);
+    resume_run(options, set);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -227,6 +306,63 @@ TEST_F(FakeOpenFoam, GoingOnKeepsWhatTheRunHasBehindIt) {
   EXPECT_TRUE(fs::exists(options_.directory / "case" / "log.interFoam.1"));
 }
 
+/// A state as interFoam leaves it at its end: no step is told beside it.
+std::string last_state(const std::string& time) {
+  return fmt::format("mkdir -p {0}; cp 0/U 0/alpha.concrete 0/p_rgh {0}/; touch {0}/phi\n", time);
+}
+
+TEST_F(FakeOpenFoam, AProlongedRunSaysWhatOneOfThatLengthSays) {
+  scene_.time.end = 2.0;
+  const std::string first = step(0.5, 0.5) + step(1.0, 0.5), then = step(1.5, 0.5) + step(2.0, 0.5);
+  program("interFoam", first + last_state("1") + then + last_state("2") + "echo End");
+  run_scene(scene_, options_);
+  const auto whole = runs::read_run(options_.directory);
+
+  options_.directory = folder_.path() / "prolonged";
+  scene_.time.end = 1.0;
+  program("interFoam", first + last_state("1") + "echo End");
+  run_scene(scene_, options_);
+  EXPECT_TRUE(fs::exists(options_.directory / "case" / "1" / "uniform" / "time"));
+  EXPECT_THAT(refusal_to_resume(options_.directory, {"time.end=0.7"}), HasSubstr("time.end=... above 1 s"));
+  EXPECT_THAT(refusal_to_resume(options_.directory, {"time.end=2", "foam.cell=0.04"}),
+              HasSubstr("foam.cell"));
+  program("interFoam", "[ -d 1 ] || exit 1\n" + then + last_state("2") + "echo End");
+  EXPECT_EQ(resume_run(options_, {"time.end=2"}).status, runs::Status::end_time);
+  const auto prolonged = runs::read_run(options_.directory);
+  EXPECT_THAT(testing::text_of(options_.directory / "case" / "sceneParameters"),
+              HasSubstr("endTime             2;"));
+
+  EXPECT_EQ(prolonged.history.columns, whole.history.columns);
+  EXPECT_EQ(testing::text_of(options_.directory / "profiles.csv"),
+            testing::text_of(folder_.path() / "run" / "profiles.csv"));
+  auto said = prolonged.info, expected = whole.info;
+  EXPECT_EQ(said["resumed_at_s"], nlohmann::ordered_json::array({1.0}));
+  for (auto* info : {&said, &expected})
+    for (const char* key : {"resumed_at_s", "provenance", "wall_s", "cpu_s", "cpu_by_program_s",
+                            "cell_steps_per_cpu_s", "cpu_s_per_simulated_s", "peak_memory_bytes"})
+      info->erase(key);
+  for (const auto& [key, value] : expected.items()) EXPECT_EQ(said[key], value) << key;
+  EXPECT_EQ(said.size(), expected.size());
+}
+
+TEST_F(FakeOpenFoam, AFinishedRunWithoutAStateIsNotMadeAnew) {
+  program("interFoam", step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  run_scene(scene_, options_);
+  const std::string info = testing::text_of(options_.directory / "run.json");
+  EXPECT_THAT(refusal_to_resume(options_.directory, {"time.end=2"}), HasSubstr("holds no whole state"));
+  EXPECT_EQ(testing::text_of(options_.directory / "run.json"), info);
+  EXPECT_TRUE(fs::exists(options_.directory / "case" / "log.interFoam"));
+}
+
+TEST(RowsOfALongerRun, AreThoseThatAreNotThereForTheEndsSake) {
+  const auto scene = roussel_slump("papanastasiou", {"output.history_interval=0.1"});
+  EXPECT_EQ(last_regular_row(scene, 0.1, {0.0, 0.099, 0.2001, 0.25}), 0.2001);
+  EXPECT_EQ(last_regular_row(scene, 0.1, {0.0, 0.099, 0.2001}), 0.2001);
+  EXPECT_EQ(last_regular_row(scene, 0.1, {}), -1.0);
+  // Gone on with at 0.15 s, its rows are spaced from there.
+  EXPECT_EQ(last_regular_row(scene, 0.1, {0.0, 0.1, 0.25, 0.35, 0.37}), 0.35);
+}
+
 /// Once the run's solver has begun.
 std::jthread interrupt_when_begun(const fs::path& log) {
   return testing::interrupt_at(log, 0, std::chrono::milliseconds(100));
@@ -249,6 +385,22 @@ TEST_F(FakeOpenFoam, ASolverThatDoesNotStopIsMadeTo) {
   const auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
   const auto outcome = run_scene(scene_, options_);
   EXPECT_EQ(outcome.status, runs::Status::interrupted);
+}
+
+TEST_F(FakeOpenFoam, AskedAgainItLeavesNobodyRunning) {
+  // Deaf to all that can be ignored, in a session of its own as mpirun's ranks are.
+  const fs::path pid = folder_.path() / "pid";
+  program("interFoam", "trap '' USR2 TERM\nsetsid /bin/sh -c \"trap '' USR2 TERM; echo \\$\\$ > '" +
+                           pid.string() + "'; while :; do sleep 0.05; done\" &\n" + step(0.5, 0.5) +
+                           "while :; do sleep 0.05; done");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto first = testing::interrupt_at(pid, 1, std::chrono::milliseconds(100)),
+             second = testing::interrupt_at(pid, 1, std::chrono::milliseconds(1500));
+  EXPECT_EQ(run_scene(scene_, options_).status, runs::Status::interrupted);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(40)) << "the grace is a minute";
+  const fs::path stat = "/proc/" + std::to_string(std::stol(testing::text_of(pid))) + "/stat";
+  const std::string left = fs::exists(stat) ? testing::text_of(stat) : "";
+  EXPECT_TRUE(left.empty() || left.find(") Z ") != std::string::npos) << left;
 }
 
 }  // namespace

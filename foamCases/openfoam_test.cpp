@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "foamCases/case_fields.h"
@@ -35,6 +36,7 @@ class OpenFoam : public ::testing::Test {
     RunOptions options;
     options.directory = folder_.path() / "run";
     options.quiet = true;
+    options.force = true;
     outcome_ = run_scene(scene, options);
     return runs::read_run(options.directory);
   }
@@ -161,6 +163,32 @@ TEST_F(OpenFoam, RanksAndInterruptsDoNotChangeTheAnswer) {
   // Their steps fall at other times, and the front moves by half a millimetre in one of them.
   EXPECT_NEAR(result.history.at("spread_mm").back(), spread_at(whole, time.back()), 1.0);
   EXPECT_GT(result.info["steps"].get<int>(), half.info["steps"].get<int>());
+}
+
+/// A finished run, off its rows and states, is gone on with from where it ended.
+TEST_F(OpenFoam, AProlongedRunIsTheOneOfThatLength) {
+  const auto scene_to = [](const char* end) {
+    return roussel_slump("papanastasiou", {"foam.cell=0.03", std::string("time.end=") + end});
+  };
+  const auto whole = run(scene_to("0.3"));
+  RunOptions options;
+  options.directory = folder_.path() / "prolonged";
+  options.quiet = true;
+  ASSERT_EQ(run_scene(scene_to("0.17"), options).status, runs::Status::end_time);
+  const double first_end = runs::read_run(options.directory).info["time_reached_s"];
+  ASSERT_EQ(resume_run(options, {"time.end=0.3"}).status, runs::Status::end_time);
+  const auto result = runs::read_run(options.directory);
+  EXPECT_EQ(result.info["resumed_at_s"], nlohmann::ordered_json::array({first_end}));
+  EXPECT_EQ(result.info["settings"], whole.info["settings"]);
+  EXPECT_EQ(result.info["resolved_toml"], whole.info["resolved_toml"]);
+  EXPECT_EQ(result.info["steps"], whole.info["steps"]);
+  EXPECT_EQ(result.info["scene_name"], "roussel-slump");
+  for (const auto& [key, value] : whole.info.items()) EXPECT_TRUE(result.info.contains(key)) << key;
+  const auto& time = result.history.at("time_s");
+  for (std::size_t i = 1; i < time.size(); ++i) EXPECT_GT(time[i], time[i - 1]);
+  EXPECT_EQ(std::count(time.begin(), time.end(), first_end), 0) << "a row for the first end's sake stayed";
+  // The time that a state is named by is rounded to 8 digits, and so is the step after it.
+  EXPECT_NEAR(result.history.at("spread_mm").back(), whole.history.at("spread_mm").back(), 1e-4);
 }
 
 class PlugIn : public OpenFoam {

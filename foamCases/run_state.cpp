@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
+#include "foamCases/sampler.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::foam {
@@ -18,25 +21,20 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* ranks_key = "\nranks ";
+constexpr const char* end_key = "\nendTime ";
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Ranks may differ from one leg of a run to the next; nothing else of the parameters may.
+/// Ranks may differ from one leg of a run to the next, and its end; nothing else of the parameters may.
 std::string without_ranks(const std::string& text) { return text.substr(0, text.find(ranks_key)); }
 
-void check_case(const fs::path& case_directory, const EarlierRun& earlier) {
-  const fs::path path = case_directory / "sceneParameters";
-  if (!fs::exists(path))
-    throw runs::RunError(
-        fmt::format("{}: missing: this is no case that `flowrest foam` made", path.string()));
-  if (without_ranks(text_of(path)) != without_ranks(scene_parameters(earlier.scene, earlier.plug_in)))
-    throw runs::RunError(
-        fmt::format("{}: it is not what `flowrest foam` writes for the scene in run.json; to go on, undo "
-                    "what was changed in it",
-                    path.string()));
+std::string without_end(const std::string& parameters) {
+  const auto begin = parameters.find(end_key);
+  if (begin == std::string::npos) return parameters;
+  return parameters.substr(0, begin) + parameters.substr(parameters.find('\n', begin + 1));
 }
 
 /// Cell fields of a full state, with their components.
@@ -58,18 +56,6 @@ bool is_whole(const CaseFields& fields, const std::string& time, const scenes::S
   return true;
 }
 
-/// The latest whole state after the start; what is later is removed.
-std::optional<std::pair<double, std::string>> keep_latest(const fs::path& case_directory,
-                                                          const scenes::Scene& scene, bool plug_in) {
-  const CaseFields fields(case_directory, CaseFields::ranks_in(case_directory));
-  auto times = fields.times();
-  for (; !times.empty() && times.back().first > 0.0; times.pop_back()) {
-    if (is_whole(fields, times.back().second, scene, plug_in)) return times.back();
-    fields.remove(times.back().second);
-  }
-  return std::nullopt;
-}
-
 /// Logs of earlier legs, in order; the latest is set aside under the next free name.
 std::vector<fs::path> earlier_logs(const fs::path& case_directory) {
   std::vector<fs::path> logs;
@@ -83,51 +69,89 @@ std::vector<fs::path> earlier_logs(const fs::path& case_directory) {
   return logs;
 }
 
+/// A table's whole rows up to a time.
+runs::Table rows_until(const fs::path& path, double time) {
+  if (!fs::exists(path)) return {};
+  runs::Table table = runs::read_csv(path);
+  if (table.columns.empty()) return table;
+  const auto& times = table.columns.front();
+  const auto count = std::upper_bound(times.begin(), times.end(), time) - times.begin();
+  for (auto& column : table.columns) column.resize(static_cast<std::size_t>(count));
+  return table;
+}
+
+std::vector<double> times_until(const fs::path& path, double time) {
+  const runs::Table table = rows_until(path, time);
+  return table.columns.empty() ? std::vector<double>{} : table.columns.front();
+}
+
 }  // namespace
 
-EarlierRun read_earlier_run(const fs::path& directory) {
-  const fs::path path = directory / "run.json";
-  const auto info = nlohmann::json::parse(text_of(path), nullptr, false);
-  if (info.is_discarded() || !info.is_object() || info.value("solver", "") != "foam" ||
-      !info.contains("resolved_toml"))
-    throw runs::RunError(
-        fmt::format("{}: is not a run of `flowrest foam` that can be gone on with: it has no run.json "
-                    "of one",
-                    directory.string()));
-  const std::string status = info.value("status", "");
-  if (status == "end-time" || status == "at-rest")
-    throw runs::RunError(fmt::format("{}: this run has come to its end ({}); there is nothing to go on with",
-                                     directory.string(), status));
+EarlierRun read_earlier_run(const fs::path& directory, const std::vector<std::string>& set) {
   EarlierRun earlier;
-  earlier.scene = scenes::parse_scene(info["resolved_toml"], path);
-  earlier.scene.name = info.value("scene_name", earlier.scene.name);
+  earlier.run = runs::read_earlier_run(directory, "foam");
+  earlier.scene = runs::scene_to_go_on_with(earlier.run, set);
+  const auto& info = earlier.run.info;
   const std::string parameters = text_of(directory / "case" / "sceneParameters");
   earlier.plug_in = parameters.find("libflowrestRheology") != std::string::npos;
+  earlier.ranks = info.value("ranks", 1);
   if (info.contains("cpu_by_program_s"))
     earlier.cpu_by_program = info["cpu_by_program_s"].get<std::map<std::string, double>>();
   if (info.contains("wall_s")) earlier.wall = info["wall_s"];
   return earlier;
 }
 
-void remove_cut_off_times(const fs::path& case_directory, const scenes::Scene& scene) {
-  const bool plug_in =
-      text_of(case_directory / "sceneParameters").find("libflowrestRheology") != std::string::npos;
-  keep_latest(case_directory, scene, plug_in);
+std::optional<StateTime> latest_whole_time(const fs::path& case_directory, const EarlierRun& earlier) {
+  if (!fs::is_directory(case_directory)) return std::nullopt;
+  const CaseFields fields(case_directory, CaseFields::ranks_in(case_directory));
+  for (auto times = fields.times(); !times.empty() && times.back().first > 0.0; times.pop_back())
+    if (is_whole(fields, times.back().second, earlier.scene, earlier.plug_in))
+      return StateTime{times.back().first, times.back().second};
+  return std::nullopt;
 }
 
-std::optional<RunState> latest_state(const fs::path& directory, const EarlierRun& earlier) {
+void check_case(const fs::path& case_directory, const EarlierRun& earlier) {
+  const fs::path path = case_directory / "sceneParameters";
+  if (!fs::exists(path))
+    throw runs::RunError(
+        fmt::format("{}: missing: this is no case that `flowrest foam` made", path.string()));
+  const std::string before = without_ranks(scene_parameters(earlier.run.scene, earlier.plug_in));
+  const std::string from_now_on = without_ranks(scene_parameters(earlier.scene, earlier.plug_in));
+  const std::string there = without_ranks(text_of(path));
+  if (there != before && there != from_now_on)
+    throw runs::RunError(
+        fmt::format("{}: it is not what `flowrest foam` writes for the scene in run.json; to go on, undo "
+                    "what was changed in it",
+                    path.string()));
+  if (without_end(before) != without_end(from_now_on))
+    throw runs::RunError(fmt::format(
+        "{}: so short a run began with steps that hang on its end, time.end = {:g} s: a longer one "
+        "would have begun otherwise; run it anew",
+        earlier.run.directory.string(), earlier.run.scene.time.end));
+}
+
+void remove_later_times(const fs::path& case_directory, const StateTime& state) {
+  const CaseFields fields(case_directory, CaseFields::ranks_in(case_directory));
+  for (const auto& [time, name] : fields.times())
+    if (time > state.time) fields.remove(name);
+}
+
+RunState take_up(const fs::path& directory, const EarlierRun& earlier, const StateTime& from) {
   const fs::path case_directory = directory / "case";
-  if (!fs::is_directory(case_directory)) return std::nullopt;
-  const auto latest = keep_latest(case_directory, earlier.scene, earlier.plug_in);
-  if (!latest) return std::nullopt;
-  check_case(case_directory, earlier);
+  remove_later_times(case_directory, from);
   RunState state;
-  state.time = latest->first;
+  state.time = from.time;
   state.cpu_by_program = earlier.cpu_by_program;
   state.wall = earlier.wall;
+  const auto& output = earlier.scene.output;
+  state.last_row = last_regular_row(earlier.scene, output.history_interval,
+                                    times_until(directory / "history.csv", from.time));
+  state.last_profile = last_regular_row(earlier.scene, output.profile_interval,
+                                        times_until(directory / "profiles.csv", from.time));
+  state.shear_rates = rows_until(case_directory / shear_rates_file, from.time);
   double solved = 0.0;
   for (const auto& path : earlier_logs(case_directory)) {
-    SolverLog log;
+    SolverLog log(solved_components(earlier.scene));
     log.feed(text_of(path));
     for (const auto& step : log.take_steps())
       if (step.time < state.time + 0.5 * step.time_step) state.steps.push_back(step);
@@ -135,6 +159,22 @@ std::optional<RunState> latest_state(const fs::path& directory, const EarlierRun
   }
   if (!state.cpu_by_program.contains("interFoam")) state.cpu_by_program["interFoam"] = solved;
   return state;
+}
+
+void complete_last_state(const fs::path& case_directory, const SolverStep& last, double time_step_before,
+                         std::size_t steps) {
+  const auto times = CaseFields(case_directory, 1).times();
+  if (times.empty() || std::abs(times.back().first - last.time) > 0.5 * last.time_step) return;
+  const std::string& name = times.back().second;
+  const fs::path file = case_directory / name / "uniform" / "time";
+  if (fs::exists(file)) return;
+  fs::create_directories(file.parent_path());
+  runs::write_atomically(
+      file, fmt::format("FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       "
+                        "dictionary;\n    location    \"{0}/uniform\";\n    object      time;\n}}\n\n"
+                        "value           {1};\n\nname            \"{0}\";\n\nindex           {2};\n\n"
+                        "deltaT          {3};\n\ndeltaT0         {4};\n",
+                        name, last.time, steps, last.time_step, time_step_before));
 }
 
 }  // namespace flowrest::foam

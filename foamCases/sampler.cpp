@@ -10,8 +10,34 @@
 
 namespace flowrest::foam {
 
+RowClock::RowClock(const scenes::Scene& scene, double interval)
+    : interval_(interval), early_(0.51 * std::min(scenes::grown_foam_step(scene), sample_interval(scene))) {}
+
+bool RowClock::is_due(double time, bool at_end) {
+  if (time + early_ < next_ && !at_end) return false;
+  continue_from(time);
+  return true;
+}
+
+void RowClock::continue_from(double time) {
+  next_ = (std::floor((time + early_) / interval_) + 1.0) * interval_;
+}
+
+double last_regular_row(const scenes::Scene& scene, double interval, const std::vector<double>& times) {
+  RowClock clock(scene, interval);
+  double last = -1.0;
+  for (const double time : times)
+    if (clock.is_due(time)) last = time;
+  return last;
+}
+
 Sampler::Sampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
-    : scene_(scene), fields_(std::move(fields)), writer_(writer), plug_in_(plug_in) {}
+    : scene_(scene),
+      fields_(std::move(fields)),
+      writer_(writer),
+      plug_in_(plug_in),
+      history_clock_(scene, scene.output.history_interval),
+      profile_clock_(scene, scene.output.profile_interval) {}
 
 void Sampler::note(const SolverStep& step) { steps_.push_back(step); }
 
@@ -42,7 +68,7 @@ void Sampler::add_steps(double time, std::vector<double>& row) {
   row.insert(row.end(), {steps.courant, steps.time_step});
 }
 
-void Sampler::sample_before(double complete_before) {
+void Sampler::sample_before(double complete_before, const std::function<void()>& after_each) {
   for (const auto& [time, name] : fields_.times()) {
     if (time >= complete_before) return;
     if (last_sampled_ && time <= *last_sampled_) continue;
@@ -51,17 +77,15 @@ void Sampler::sample_before(double complete_before) {
       return fields_.read(name, field, cells(), components);
     });
     if (time > 0.0 && !fields_.holds(name, "p_rgh")) fields_.remove(name);
+    after_each();
   }
 }
 
 void Sampler::continue_from(const runs::Table& history) {
   if (history.rows() == 0) return;
   last_sampled_ = history.at("time_s").back();
-  const auto next = [&](double interval) {
-    return (std::floor(*last_sampled_ / interval + 0.5) + 1.0) * interval;
-  };
-  next_history_ = next(scene_.output.history_interval);
-  next_profile_ = next(scene_.output.profile_interval);
+  history_clock_.continue_from(*last_sampled_);
+  if (const auto profile = writer_.last_profile()) profile_clock_.continue_from(*profile);
 }
 
 bool Sampler::thixotropic() const { return carries_flocculation(scene_); }
@@ -71,22 +95,12 @@ std::vector<double> Sampler::flocculation(double time, const ReadField& read) co
                     : std::vector<double>(cells(), scene_.thixotropy->initial_flocculation);
 }
 
-bool Sampler::history_is_due(double time) {
-  return is_due(time, scene_.output.history_interval, next_history_);
-}
+bool Sampler::history_is_due(double time) { return history_clock_.is_due(time, is_at_end(time)); }
 
-bool Sampler::profile_is_due(double time) {
-  return is_due(time, scene_.output.profile_interval, next_profile_);
-}
+bool Sampler::profile_is_due(double time) { return profile_clock_.is_due(time, is_at_end(time)); }
 
-/// interFoam samples at the first step past half a step before each multiple, so a sample may come a little
-/// early. The end is always due.
-bool Sampler::is_due(double time, double interval, double& next) const {
-  const double early = 0.51 * std::min(scenes::grown_foam_step(scene_), sample_interval(scene_));
-  const bool at_end = time > scene_.time.end - scenes::grown_foam_step(scene_);
-  if (time + early < next && !at_end) return false;
-  next = (std::floor((time + early) / interval) + 1.0) * interval;
-  return true;
+bool Sampler::is_at_end(double time) const {
+  return time > scene_.time.end - scenes::grown_foam_step(scene_);
 }
 
 }  // namespace flowrest::foam

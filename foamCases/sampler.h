@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -15,6 +16,24 @@
 
 namespace flowrest::foam {
 
+/// Which samples become rows. interFoam samples at the first step past half a step before each multiple of
+/// the interval, so a sample may come a little early.
+class RowClock {
+ public:
+  RowClock(const scenes::Scene&, double interval);
+  /// Whether the sample of this time becomes a row; `at_end`: the last one does in any case.
+  bool is_due(double time, bool at_end = false);
+  /// Goes on behind the row of this time.
+  void continue_from(double time);
+
+ private:
+  double interval_, early_;  ///< s
+  double next_ = 0.0;        ///< s
+};
+
+/// The last of these times of rows that is a row of a longer run, too. s; -1 where there is none
+double last_regular_row(const scenes::Scene&, double interval, const std::vector<double>& times);
+
 /// Turns the time directories of a running case into rows of history.csv and profiles.csv, and removes those
 /// that were written for that only (a snapshot also holds p_rgh). What is gauged is a matter of the scene's
 /// kind.
@@ -25,9 +44,11 @@ class Sampler {
   /// Counts a step: what the solver's log says of it goes into the next row at or after its time.
   void note(const SolverStep&);
 
-  /// Samples, in their order, the time directories not yet sampled whose time is below `complete_before`.
+  /// Samples, in their order, the time directories not yet sampled whose time is below `complete_before`, and
+  /// calls `after_each`.
   /// @throws FieldError where one of them is not whole.
-  void sample_before(double complete_before);
+  void sample_before(
+      double complete_before, const std::function<void()>& after_each = [] {});
 
   /// Goes on with a run whose rows so far are these: what was sampled is not sampled again.
   virtual void continue_from(const runs::Table& history);
@@ -70,15 +91,14 @@ class Sampler {
 
  private:
   SolverStep since_last_row(double time);
-  bool is_due(double time, double interval, double& next) const;
+  bool is_at_end(double time) const;
 
   const scenes::Scene& scene_;
   CaseFields fields_;
   runs::RunWriter& writer_;
   bool plug_in_;
   std::optional<double> last_sampled_;
-  double next_history_ = 0.0;
-  double next_profile_ = 0.0;
+  RowClock history_clock_, profile_clock_;
   std::deque<SolverStep> steps_;  ///< not yet in a row
 };
 

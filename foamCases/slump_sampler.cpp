@@ -83,6 +83,7 @@ void SlumpSampler::continue_from(const runs::Table& history) {
   conservation_.continue_from(history);
   for (const double air : history.at("trapped_air_m3"))
     state_.most_trapped_air = std::max(state_.most_trapped_air, air);
+  state_.trapped_air = history.at("trapped_air_m3").back();
   state_.time = time();
   state_.spread = 1e-3 * history.at("spread_mm").back();
   state_.front = 1e-3 * history.at("front_mm").back();

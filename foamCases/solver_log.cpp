@@ -86,6 +86,9 @@ void SolverLog::read_line(std::string_view line) {
 }
 
 void SolverLog::read_fault(std::string_view line) {
+  for (const auto words : {"No space left on device", "Disk quota exceeded", "File too large",
+                           "Input/output error", "Cannot allocate memory", "std::bad_alloc"})
+    if (machine_.empty() && line.find(words) != std::string_view::npos) machine_ = trimmed(line);
   if (fatal_lines_left_ > 0) {
     --fatal_lines_left_;
     if (const auto text = trimmed(line); !text.empty())

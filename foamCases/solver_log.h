@@ -43,6 +43,8 @@ class SolverLog {
   /// Why the solver cannot go on, from its own message or from a number that is none; empty while all is
   /// well.
   std::string fault() const;
+  /// The first line that says that the machine failed the solver, as a full disk does; empty where none does.
+  std::string machine_fault() const { return machine_; }
 
  private:
   void read_line(std::string_view line);
@@ -58,7 +60,7 @@ class SolverLog {
   bool ended_ = false;
   bool in_step_ = false;
   std::string build_;
-  std::string fatal_;
+  std::string fatal_, machine_;
   int fatal_lines_left_ = 0;
   std::string not_a_number_;
 };

@@ -12,8 +12,8 @@
 
 namespace flowrest::foam::testing {
 
-/// Sends this process an interrupt some time after a file has more than `bytes`, or after half a minute. Gone
-/// before that, as where the run has thrown, it sends none.
+/// Asks this process to stop, by a signal that is not ignored in the background, some time after a file has
+/// more than `bytes`, or after half a minute. Gone before that, as where the run has thrown, it sends none.
 inline std::jthread interrupt_at(const std::filesystem::path& file, std::uintmax_t bytes,
                                  std::chrono::milliseconds later = {}) {
   return std::jthread([=](std::stop_token gone) {
@@ -27,7 +27,7 @@ inline std::jthread interrupt_at(const std::filesystem::path& file, std::uintmax
     while (!has_grown() && !gone.stop_requested() && std::chrono::steady_clock::now() < latest)
       std::this_thread::sleep_for(10ms);
     std::this_thread::sleep_for(later);
-    if (!gone.stop_requested()) kill(getpid(), SIGINT);
+    if (!gone.stop_requested()) kill(getpid(), SIGTERM);
   });
 }
 

@@ -6,7 +6,10 @@
 
 #include "mpm/output/run.h"
 #include "mpm/solver/kernels.h"
+#include "runs/console.h"
+#include "runs/earlier_run.h"
 #include "runs/process.h"
+#include "runs/run_folder.h"
 #include "scenes/scene.h"
 
 namespace flowrest::mpm {
@@ -16,27 +19,36 @@ namespace {
 struct MpmOptions {
   std::string scene, model, output, resume, instruction_set;
   std::vector<std::string> set;
-  bool json = false, quiet = false;
+  bool force = false, json = false, quiet = false;
 };
 
 RunResult run_or_resume(const MpmOptions& options) {
   RunOptions run_options;
   run_options.quiet = options.quiet;
+  run_options.force = options.force;
   run_options.instruction_set = options.instruction_set;
   const runs::InterruptGuard guard;
   run_options.interrupted = [] { return runs::InterruptGuard::count() > 0; };
   if (!options.resume.empty()) {
     run_options.directory = options.resume;
-    return resume(run_options);
+    return resume(run_options, options.set);
   }
-  scenes::Overrides overrides;
-  overrides.set = options.set;
-  if (!options.model.empty()) overrides.model = scenes::model_from_name(options.model);
-  const scenes::Scene scene = scenes::load_scene(options.scene, overrides);
+  const scenes::Scene scene =
+      scenes::load_scene(options.scene, scenes::overrides_of_command_line(options.set, options.model));
   run_options.directory = options.output.empty() ? std::filesystem::path("out") / scene.name /
                                                        ("mpm-" + scenes::to_string(scene.material.model))
                                                  : std::filesystem::path(options.output);
   return run(scene, run_options);
+}
+
+/// @throws scenes::SceneError, runs::RunError where an option would be without effect.
+void check_options(const MpmOptions& options) {
+  if (!options.model.empty()) scenes::model_from_name(options.model);
+  if (options.resume.empty()) return;
+  std::vector<std::string> without_effect;
+  if (!options.model.empty()) without_effect.emplace_back("--model");
+  if (!options.output.empty()) without_effect.emplace_back("--output");
+  runs::refuse_beside_resume(without_effect, "--set, --instruction-set, --json, --quiet");
 }
 
 }  // namespace
@@ -52,8 +64,13 @@ void add_commands(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("-o,--output", options->output, "The run directory (out/SCENE/mpm-MODEL)");
   auto* resume_option =
-      command->add_option("--resume", options->resume, "Go on with the run in this directory; needs no scene")
+      command
+          ->add_option(
+              "--resume", options->resume,
+              "Go on with the run in this directory; needs no scene. --set time.end=... prolongs it, "
+              "finished or not")
           ->excludes(scene);
+  command->add_flag("--force", options->force, runs::force_help)->excludes(resume_option);
   command
       ->add_option("--instruction-set", options->instruction_set,
                    "avx512, avx2 or generic (the best this machine runs)")
@@ -63,15 +80,17 @@ void add_commands(CLI::App& app) {
   command->callback([options, scene, resume_option] {
     if (scene->count() == 0 && resume_option->count() == 0)
       throw CLI::RequiredError("a scene, or --resume RUN");
+    check_options(*options);
     const RunResult result = run_or_resume(*options);
     if (options->json)
-      fmt::print("{}\n", nlohmann::ordered_json{{"status", runs::to_string(result.status)},
-                                                {"reason", result.reason},
-                                                {"time_s", result.time},
-                                                {"gauge", result.headline}}
-                             .dump());
+      runs::say(stdout, nlohmann::ordered_json{{"status", runs::to_string(result.status)},
+                                               {"reason", result.reason},
+                                               {"time_s", result.time},
+                                               {"gauge", result.headline}}
+                                .dump() +
+                            "\n");
     if (result.status == runs::Status::interrupted) {
-      fmt::print(stderr, "{}\n", result.reason);
+      runs::say(stderr, result.reason + "\n");
       throw CLI::RuntimeError(130);
     }
   });

@@ -8,15 +8,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <thread>
 
-#include "runs/run_directory.h"
+#include "runs/errors.h"
+#include "runs/machine.h"
 
 extern char** environ;
 
@@ -26,10 +35,73 @@ namespace fs = std::filesystem;
 
 namespace {
 
-volatile sig_atomic_t interrupts = 0;
-struct sigaction earlier_int, earlier_term;
+constexpr std::array asking_to_stop = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGUSR1};
+constexpr std::int64_t together = 700'000'000;  // ns: of signals that say the same
 
-void note_interrupt(int) { interrupts = interrupts + 1; }
+volatile sig_atomic_t interrupts = 0;
+std::atomic<std::int64_t> last_interrupt = 0;  // ns
+std::atomic<bool> nobody_reads = false;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal's handler may use no other");
+
+int guards = 0;
+std::array<struct sigaction, asking_to_stop.size()> earlier_actions;
+
+void note_interrupt(int number) {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t at = std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+  // Every further word would bring this one again, every further second of CPU time the other.
+  const bool again = number == SIGPIPE ? nobody_reads.exchange(true) : number == SIGXCPU && interrupts > 0;
+  if (again || (interrupts > 0 && at - last_interrupt < together)) return;
+  last_interrupt = at;
+  interrupts = interrupts + 1;
+}
+
+/// What a child and all that it starts carry in their environment, so that they are found whoever their
+/// parent has become.
+constexpr const char* mark_name = "FLOWREST_STARTED_AS";
+
+std::string new_mark() {
+  static std::atomic<int> count = 0;
+  return fmt::format("{}-{}-{}", getpid(), std::chrono::steady_clock::now().time_since_epoch().count(),
+                     ++count);
+}
+
+bool carries(const fs::path& process, const std::string& mark) {
+  std::ifstream file(process / "environ", std::ios::binary);
+  const std::string entry = std::string(mark_name) + "=" + mark;
+  for (std::string variable; std::getline(file, variable, '\0');)
+    if (variable == entry) return true;
+  return false;
+}
+
+/// The processes that carry a mark, and all that descend from them: of those some may carry another.
+std::set<pid_t> family_of(const std::string& mark) {
+  std::set<pid_t> family;
+  std::map<pid_t, pid_t> parents;
+  std::error_code error;
+  for (const auto& folder : fs::directory_iterator("/proc", error)) {
+    const pid_t pid = std::atoi(folder.path().filename().c_str());
+    if (pid <= 0) continue;
+    std::ifstream file(folder.path() / "stat");
+    std::string text;
+    std::getline(file, text);
+    const auto name_ends = text.rfind(')');  // the name may hold anything
+    if (name_ends == std::string::npos) continue;
+    std::istringstream rest(text.substr(name_ends + 1));
+    std::string state;
+    pid_t parent = 0;
+    if (!(rest >> state >> parent) || state == "Z") continue;
+    parents[pid] = parent;
+    if (carries(folder.path(), mark)) family.insert(pid);
+  }
+  for (std::size_t before = 0; before != family.size();) {
+    before = family.size();
+    for (const auto& [pid, parent] : parents)
+      if (family.contains(parent)) family.insert(pid);
+  }
+  return family;
+}
 
 std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added) {
   std::vector<std::string> merged;
@@ -54,7 +126,7 @@ void become(const char* program, char** arguments, char** environment, const cha
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) return;
-  // A caller's ignored or noted signals are not the child's.
+  // It has a group of its own, which no terminal interrupts: what it is sent, we mean.
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
   const int nothing = open("/dev/null", O_RDONLY);
@@ -95,20 +167,29 @@ std::string ProcessEnd::how() const {
                      : fmt::format("exit code {}", exit_code);
 }
 
+bool ProcessEnd::from_outside() const {
+  constexpr std::array sent_by_others = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGXCPU, SIGXFSZ};
+  const int number = signal != 0 ? signal : exit_code - 128;
+  return std::find(sent_by_others.begin(), sent_by_others.end(), number) != sent_by_others.end();
+}
+
 Process::Process(const fs::path& program, const std::vector<std::string>& arguments,
                  const fs::path& directory, const fs::path& log,
-                 const std::map<std::string, std::string>& environment) {
+                 const std::map<std::string, std::string>& environment)
+    : mark_(new_mark()) {
   std::vector<std::string> argument_texts{program.filename().string()};
   argument_texts.insert(argument_texts.end(), arguments.begin(), arguments.end());
-  auto environment_texts = merged_environment(environment);
+  auto marked = environment;
+  marked[mark_name] = mark_;
+  auto environment_texts = merged_environment(marked);
   const auto argument_pointers = pointers(argument_texts);
   const auto environment_pointers = pointers(environment_texts);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) throw RunError(fmt::format("{}: cannot be written: {}", log.string(), std::strerror(errno)));
+  if (file < 0) cannot_be_written(log, errno);
   int word[2];  // by which the child says why it has not become the program; closed by its becoming it
   if (pipe2(word, O_CLOEXEC) != 0) {
     close(file);
-    throw RunError(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno)));
+    throw MachineError(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(errno)));
   }
   const pid_t parent = getpid();
   pid_ = fork();
@@ -126,7 +207,10 @@ Process::Process(const fs::path& program, const std::vector<std::string>& argume
   close(word[0]);
   if (reason != 0) {
     if (pid_ > 0) waitpid(pid_, nullptr, 0);
-    throw MissingProgram(fmt::format("{}: cannot be started: {}", program.string(), std::strerror(reason)));
+    const std::string what =
+        fmt::format("{}: cannot be started: {}", program.string(), std::strerror(reason));
+    if (machine_is_at_fault(reason)) throw MachineError(what);
+    throw MissingProgram(what);
   }
   setpgid(pid_, pid_);  // also here: whichever of the two comes first
 }
@@ -161,21 +245,50 @@ std::optional<ProcessEnd> Process::wait(double longest) {
 }
 
 void Process::signal(int number) {
-  if (!end_ && pid_ > 0) kill(-pid_, number);
+  if (end_ || pid_ <= 0) return;
+  kill(-pid_, number);
+  if (number == SIGKILL)
+    for (const pid_t pid : family_of(mark_)) kill(pid, SIGKILL);
+}
+
+bool Process::hand_on_interrupts() {
+  for (const int asked = InterruptGuard::count(); handed_on_ < asked; ++handed_on_)
+    signal(handed_on_ < 2 ? SIGINT : SIGKILL);
+  return handed_on_ > 0;
+}
+
+void Process::end_survivors(double longest) {
+  const auto start = std::chrono::steady_clock::now();
+  for (auto left = family_of(mark_); !left.empty(); left = family_of(mark_)) {
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
+    if (waited.count() >= longest || InterruptGuard::count() > handed_on_)
+      for (const pid_t pid : left) kill(pid, SIGKILL);
+    constexpr double hopeless = 10.0;  // s, after which a device holds what was killed
+    if (waited.count() >= longest + hopeless) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
 }
 
 InterruptGuard::InterruptGuard() {
+  if (guards++ > 0) return;
   interrupts = 0;
+  nobody_reads = false;
   struct sigaction action {};
   action.sa_handler = note_interrupt;
+  action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &earlier_int);
-  sigaction(SIGTERM, &action, &earlier_term);
+  for (std::size_t i = 0; i < asking_to_stop.size(); ++i) {
+    sigaction(asking_to_stop[i], nullptr, &earlier_actions[i]);
+    if (earlier_actions[i].sa_handler != SIG_IGN) sigaction(asking_to_stop[i], &action, nullptr);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &earlier_int, nullptr);
-  sigaction(SIGTERM, &earlier_term, nullptr);
+  if (--guards > 0) return;
+  for (std::size_t i = 0; i < asking_to_stop.size(); ++i)
+    sigaction(asking_to_stop[i], &earlier_actions[i], nullptr);
+  // What is left to say must not end us now.
+  if (nobody_reads) std::signal(SIGPIPE, SIG_IGN);
 }
 
 int InterruptGuard::count() { return interrupts; }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "runs/console.h"
+
 namespace flowrest::runs {
 
 namespace {
@@ -44,20 +46,18 @@ void Progress::update(double done, const std::string& state) {
   if (terminal_) {
     constexpr int width = 24;
     const int filled = static_cast<int>(fraction * width);
-    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {}{}", what_, std::string(filled, '#'),
-               std::string(width - filled, '.'), 100.0 * fraction, state, left);
+    say(stderr, fmt::format("\r\033[K{} [{}{}] {:3.0f} %  {}{}", what_, std::string(filled, '#'),
+                            std::string(width - filled, '.'), 100.0 * fraction, state, left));
   } else {
-    fmt::print(stderr, "{}: {:.0f} %, {}{}\n", what_, 100.0 * fraction, state, left);
+    say(stderr, fmt::format("{}: {:.0f} %, {}{}\n", what_, 100.0 * fraction, state, left));
   }
-  std::fflush(stderr);
 }
 
 void Progress::finish(const std::string& summary) {
   if (quiet_) return;
   const double elapsed = Seconds(std::chrono::steady_clock::now() - start_).count();
-  fmt::print(stderr, "{}{}: {} (in {})\n", terminal_ ? "\r\033[K" : "", what_, summary,
-             duration_text(elapsed));
-  std::fflush(stderr);
+  say(stderr,
+      fmt::format("{}{}: {} (in {})\n", terminal_ ? "\r\033[K" : "", what_, summary, duration_text(elapsed)));
 }
 
 }  // namespace flowrest::runs

@@ -65,6 +65,16 @@ nlohmann::ordered_json provenance() {
   };
 }
 
+std::string version_in(const nlohmann::ordered_json& provenance) {
+  const auto text = [&](const char* key) {
+    const auto found = provenance.find(key);
+    return found != provenance.end() && found->is_string() ? found->get<std::string>() : "unknown";
+  };
+  const auto modified = provenance.find("git_dirty");
+  return text("flowrest") + " (commit " + text("git_hash").substr(0, 12) +
+         (modified != provenance.end() && *modified == true ? ", modified)" : ")");
+}
+
 double peak_memory_bytes() {
   const auto kibibytes = [](int who) {
     rusage usage{};

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -16,7 +17,6 @@
 #include <system_error>
 
 #include "runs/depth.h"
-#include "runs/folder.h"
 #include "runs/gauges.h"
 
 namespace flowrest::runs {
@@ -26,20 +26,11 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* format_name = "flowrest run";
-constexpr int format_version = 1;
-
 const std::array<std::pair<Status, const char*>, 5> status_names = {{{Status::running, "running"},
                                                                      {Status::at_rest, "at-rest"},
                                                                      {Status::end_time, "end-time"},
                                                                      {Status::interrupted, "interrupted"},
                                                                      {Status::failed, "failed"}}};
-
-std::optional<Status> status_from(const std::string& name) {
-  for (const auto& [status, text] : status_names)
-    if (name == text) return status;
-  return std::nullopt;
-}
 
 std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -49,42 +40,10 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
-/// Reads and checks run.json's marks; `problem` is set instead where it is not one of ours.
-std::optional<Json> read_info(const fs::path& path, std::string& problem) {
-  Json info = Json::parse(read_text(path), nullptr, false);
-  if (info.is_discarded() || !info.is_object()) {
-    problem = "it is not a JSON object";
-    return std::nullopt;
-  }
-  const auto name = info.find("format");
-  const auto version = info.find("format_version");
-  if (name == info.end() || *name != format_name || version == info.end() || !version->is_number_integer()) {
-    problem = fmt::format("it does not say \"format\": \"{}\" with a \"format_version\"", format_name);
-    return std::nullopt;
-  }
-  if (*version != format_version) {
-    problem =
-        fmt::format("its format_version is {}, this flowrest reads {}", version->dump(), format_version);
-    return std::nullopt;
-  }
-  return info;
-}
-
 /// A number as CSV has it; what reads nothing is an empty cell.
 std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{:.17g}", value); }
 
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ",")); }
-
-void append(std::ofstream& file, const fs::path& path, const std::string& text) {
-  file << text << std::flush;
-  if (!file) throw RunError(fmt::format("{}: cannot be written (is the disk full?)", path.string()));
-}
-
-std::ofstream open_to_append(const fs::path& path) {
-  std::ofstream file(path, std::ios::binary | std::ios::app);
-  if (!file) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-  return file;
-}
 
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -129,15 +88,23 @@ std::vector<Line> lines_of(std::string_view text) {
   return lines;
 }
 
-/// Cuts a CSV file back to whole rows whose first number is at most `time`; returns its header ("" where
-/// there is none).
-std::string cut_back(const fs::path& path, double time) {
+/// The first line of a CSV file; empty where there is none, or none to its end.
+std::string header_of(const fs::path& path) {
   if (!fs::exists(path)) return "";
+  const std::string text = read_text(path);
+  const auto lines = lines_of(text);
+  return lines.empty() || !lines.front().ended ? "" : std::string(trimmed(lines.front().text));
+}
+
+/// Cuts a CSV file back to whole rows whose first number is at most `time`; one without a header goes. `last`
+/// becomes the last row's first number.
+void cut_back(const fs::path& path, double time, std::optional<double>& last) {
+  if (!fs::exists(path)) return;
   const std::string text = read_text(path);
   const auto lines = lines_of(text);
   if (lines.empty() || !lines.front().ended) {
     fs::remove(path);
-    return "";
+    return;
   }
   std::string kept(lines.front().text);
   kept += '\n';
@@ -145,11 +112,12 @@ std::string cut_back(const fs::path& path, double time) {
     if (!lines[i].ended) break;
     const auto row_time = parsed(cells_of(lines[i].text).front());
     if (!row_time || *row_time > time) continue;
+    last = row_time;
+    last = row_time;
     kept.append(lines[i].text);
     kept += '\n';
   }
   write_atomically(path, kept);
-  return std::string(trimmed(lines.front().text));
 }
 
 std::string profile_header(scenes::Kind kind) {
@@ -204,86 +172,112 @@ std::string to_string(Status status) {
   throw std::logic_error("a status without a name");
 }
 
+std::optional<Status> status_from(const std::string& name) {
+  for (const auto& [status, text] : status_names)
+    if (name == text) return status;
+  return std::nullopt;
+}
+
+std::optional<Json> read_info(const fs::path& path, std::string& problem) {
+  if (!fs::exists(path)) return std::nullopt;
+  Json info = Json::parse(read_text(path), nullptr, false);
+  if (info.is_discarded() || !info.is_object()) {
+    problem = "it is not a JSON object";
+    return std::nullopt;
+  }
+  const auto name = info.find("format");
+  const auto version = info.find("format_version");
+  if (name == info.end() || *name != run_format || version == info.end() || !version->is_number_integer()) {
+    problem = fmt::format("it does not say \"format\": \"{}\" with a \"format_version\"", run_format);
+    return std::nullopt;
+  }
+  if (*version != run_format_version) {
+    problem =
+        fmt::format("its format_version is {}, this flowrest reads {}", version->dump(), run_format_version);
+    return std::nullopt;
+  }
+  return info;
+}
+
 void write_atomically(const fs::path& path, const std::string& text) {
   const fs::path partial = path.string() + ".part";
-  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
-  file << text << std::flush;
-  file.close();
   std::error_code error;
-  if (file) fs::rename(partial, path, error);
-  if (!file || error) {
-    const std::string why = error ? error.message() : std::strerror(errno);
+  try {
+    OutputFile file(partial, true);
+    file.append(text);
+    file.close();
+    fs::rename(partial, path, error);
+    if (error) cannot_be_written(path, error.value());
+  } catch (...) {
     fs::remove(partial, error);
-    throw RunError(fmt::format("{}: cannot be written: {}", path.string(), why));
+    throw;
   }
 }
 
-RunWriter::RunWriter(const fs::path& directory, const scenes::Scene& scene, const std::string& solver)
-    : directory_(directory), profile_header_(profile_header(scene.kind)) {
-  make_folder(directory);
-  if (!fs::is_empty(directory)) {
-    std::string problem = "it has no run.json";
-    if (!fs::exists(directory / "run.json") || !read_info(directory / "run.json", problem))
-      throw RunError(
-          fmt::format("{}: not empty and not a run of flowrest ({}); name a new or an empty folder",
-                      directory.string(), problem));
-  }
-  info_ = {{"format", format_name},
-           {"format_version", format_version},
-           {"title", scene.title},
-           {"scene_name", scene.name},
-           {"kind", scenes::to_string(scene.kind)},
-           {"solver", solver},
-           {"model", scenes::to_string(scene.material.model)},
-           {"status", to_string(Status::running)},
-           {"reason", ""},
-           {"verdict", ""},
-           {"provenance", provenance()},
-           {"scene", scene.source},
-           {"settings", Json::parse(scenes::resolved_json(scene))},
-           {"resolved_toml", scenes::resolved_toml(scene)},
-           {"gauges", gauge_definitions(scene)}};
+RunWriter::RunWriter(FolderLock lock, scenes::Kind kind, Json info)
+    : lock_(std::move(lock)), info_(std::move(info)), profile_header_(profile_header(kind)) {
+  lock_.keep_room();
+}
+
+RunWriter::RunWriter(RunFolder folder)
+    : RunWriter(std::move(folder.lock_), folder.kind_, std::move(folder.info_)) {
   // First the new run.json: killed at any moment, the folder stays recognisable, can be gone on with and no
   // old status vouches for new data.
   write();
-  remove_outputs(directory);
+  remove_outputs(directory());
 }
 
-RunWriter RunWriter::resume(const fs::path& directory, const scenes::Scene& scene, double time) {
-  RunWriter writer;
-  writer.directory_ = directory;
-  writer.profile_header_ = profile_header(scene.kind);
+RunWriter::RunWriter(const fs::path& directory, const scenes::Scene& scene, const std::string& solver,
+                     Replace replace)
+    : RunWriter(RunFolder(directory, scene, solver, replace)) {}
+
+RunWriter RunWriter::resume(const fs::path& directory, const scenes::Scene& scene, const Continuation& at) {
+  return resume(FolderLock(directory), scene, at);
+}
+
+RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const Continuation& at) {
+  const fs::path directory = lock.folder(), path = directory / "run.json";
   std::string problem = "it is missing";
-  const fs::path path = directory / "run.json";
-  auto info = fs::exists(path) ? read_info(path, problem) : std::nullopt;
+  auto info = read_info(path, problem);
   if (!info) throw RunError(fmt::format("{}: cannot be resumed: {}", path.string(), problem));
-  writer.info_ = std::move(*info);
+  RunWriter writer(std::move(lock), scene.kind, std::move(*info));
+  if (const std::string there = header_of(directory / "profiles.csv");
+      !there.empty() && there != writer.profile_header_)
+    throw RunError(fmt::format("{}:1: the columns are '{}', a {} writes '{}'",
+                               (directory / "profiles.csv").string(), there, scenes::to_string(scene.kind),
+                               writer.profile_header_));
   writer.info_["status"] = to_string(Status::running);
   writer.info_["reason"] = "";
   writer.info_["verdict"] = "";
-  writer.info_["resumed_at_s"].push_back(time);
+  writer.info_.erase("failure");
+  writer.info_["resumed_at_s"].push_back(at.time);
   writer.info_["provenance"] = provenance();
+  writer.info_["settings"] = Json::parse(scenes::resolved_json(scene));
+  writer.info_["resolved_toml"] = scenes::resolved_toml(scene);
   writer.write();
-  const std::string header = cut_back(directory / "history.csv", time);
-  if (!header.empty()) {
-    for (const auto cell : cells_of(header)) writer.history_columns_.emplace_back(cell);
-    writer.history_ = open_to_append(directory / "history.csv");
-  }
-  const std::string profiles = cut_back(directory / "profiles.csv", time);
-  if (!profiles.empty()) {
-    if (profiles != writer.profile_header_)
-      throw RunError(fmt::format("{}:1: the columns are '{}', a {} writes '{}'",
-                                 (directory / "profiles.csv").string(), profiles,
-                                 scenes::to_string(scene.kind), writer.profile_header_));
-    writer.profiles_ = open_to_append(directory / "profiles.csv");
+  try {
+    writer.cut_back_to(at);
+  } catch (const std::exception&) {
+    writer.fail(failure_at_hand(0.0));
+    throw;
   }
   return writer;
+}
+
+void RunWriter::cut_back_to(const Continuation& at) {
+  cut_back(file("history.csv"), at.history, last_row_);
+  cut_back(file("profiles.csv"), at.profiles, last_profile_);
+  if (const std::string header = header_of(file("history.csv")); !header.empty()) {
+    for (const auto cell : cells_of(header)) history_columns_.emplace_back(cell);
+    history_.emplace(file("history.csv"));
+  }
+  if (!header_of(file("profiles.csv")).empty()) profiles_.emplace(file("profiles.csv"));
 }
 
 void RunWriter::history_columns(const std::vector<std::string>& names) {
   if (names.empty() || names.front() != "time_s")
     throw std::invalid_argument("the first column must be time_s");
-  const fs::path path = directory_ / "history.csv";
+  const fs::path path = file("history.csv");
   if (!history_columns_.empty()) {
     if (names != history_columns_)
       throw RunError(fmt::format("{}:1: the columns are '{}', this run would write '{}'", path.string(),
@@ -291,47 +285,63 @@ void RunWriter::history_columns(const std::vector<std::string>& names) {
     return;
   }
   history_columns_ = names;
-  history_ = open_to_append(path);
-  append(history_, path, joined(names) + '\n');
+  history_.emplace(path);
+  history_->append(joined(names) + '\n');
 }
 
 void RunWriter::history(std::span<const double> row) {
   if (row.empty() || row.size() != history_columns_.size())
     throw std::invalid_argument(
         fmt::format("{} numbers for {} columns", row.size(), history_columns_.size()));
+  if (row.front() == last_row_) return;
+  last_row_ = row.front();
   std::string line;
   for (const double value : row) line += number(value) + ',';
   line.pop_back();
   line += '\n';
-  append(history_, directory_ / "history.csv", line);
+  history_->append(line);
 }
 
 void RunWriter::profile(double time, std::span<const double> coordinate, std::span<const double> value) {
   if (coordinate.size() != value.size())
     throw std::invalid_argument("a profile needs as many values as coordinates");
-  const fs::path path = directory_ / "profiles.csv";
+  if (time == last_profile_) return;
+  last_profile_ = time;
   std::string text;
-  if (!profiles_.is_open()) {
-    profiles_ = open_to_append(path);
+  if (!profiles_) {
+    profiles_.emplace(file("profiles.csv"));
     text = profile_header_ + '\n';
   }
   const std::string time_text = number(time);
   for (std::size_t i = 0; i < coordinate.size(); ++i)
     text += time_text + ',' + number(coordinate[i]) + ',' + number(value[i]) + '\n';
-  append(profiles_, path, text);
+  profiles_->append(text);
 }
 
 void RunWriter::write() {
   // Whatever bytes a message holds, run.json is written: invalid UTF-8 is replaced, never thrown at.
-  write_atomically(directory_ / "run.json", info_.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  const std::string text = info_.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  try {
+    write_atomically(file("run.json"), text);
+  } catch (const MachineError&) {
+    lock_.give_room();
+    write_atomically(file("run.json"), text);
+  }
 }
 
 void RunWriter::finish(Status status, const std::string& reason, const std::string& verdict) {
   info_["status"] = to_string(status);
   info_["reason"] = reason;
-  info_["verdict"] = verdict;
+  info_["verdict"] =
+      status == Status::failed && verdict == "sound" ? verdict_of_failure(Fault::numerics) : verdict;
   info_["peak_memory_bytes"] = peak_memory_bytes();
   write();
+}
+
+void RunWriter::fail(const Failure& failure, const std::string& verdict) {
+  info_["failure"] = to_string(failure.fault);
+  finish(Status::failed, failure.reason,
+         verdict.starts_with("noisy") ? verdict : verdict_of_failure(failure.fault));
 }
 
 bool Table::has(const std::string& name) const {

@@ -1,84 +1,104 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "runs/errors.h"
+#include "runs/folder_lock.h"
+#include "runs/machine.h"
+#include "runs/output_file.h"
+#include "runs/run_folder.h"
 #include "scenes/scene.h"
 
 /// The run directory: what every run leaves and the comparison reads, whoever made it.
 namespace flowrest::runs {
 
-/// A run directory that cannot be written or read. what() names the file, what is wrong and what is expected.
-class RunError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The numerics failed (exit 3): the run directory stays, with the reason.
-class NumericsError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A program that is needed is missing (exit 4). what() says which and how to get it.
-class MissingProgram : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+/// What run.json says of itself.
+inline constexpr const char* run_format = "flowrest run";
+inline constexpr int run_format_version = 1;
 
 /// The result of run.json's `status`.
 enum class Status { running, at_rest, end_time, interrupted, failed };
 std::string to_string(Status);
 
+std::optional<Status> status_from(const std::string&);
+
+/// A run.json, where it is one of ours; else nothing, and `problem` says why. It stays what it is where there
+/// is no such file.
+std::optional<nlohmann::ordered_json> read_info(const std::filesystem::path&, std::string& problem);
+
 /// Replaces a file atomically: a reader sees the old text or the new one, never a part.
-/// @throws RunError where it cannot be written.
+/// @throws RunError where it cannot be written, MachineError where that is the machine's fault.
 void write_atomically(const std::filesystem::path&, const std::string& text);
 
-/// Writes a run directory. CSV rows are appended and flushed as they come, so an interrupted run is readable;
-/// run.json is replaced atomically. Numbers are written with 17 significant digits; a gauge that
-/// reads nothing (`runs::nothing`) as an empty cell.
+/// Where a run is gone on with, s. The end of a run may have left rows that a longer one does not have.
+struct Continuation {
+  Continuation(double at) : time(at), history(at), profiles(at) {}
+  Continuation(double at, double last_row, double last_profile)
+      : time(at), history(last_row), profiles(last_profile) {}
+  double time;
+  double history, profiles;  ///< until when rows and profiles are kept
+};
+
+/// Writes a run directory and holds it while it lives. CSV rows are appended as they come, so an interrupted
+/// run is readable; run.json is replaced atomically. Numbers are written with 17 significant digits, a gauge
+/// that reads nothing (`runs::nothing`) as an empty cell. Every method that writes throws MachineError where
+/// the disk is full; run.json can be written all the same, as some room is kept for it.
 class RunWriter {
  public:
-  /// Creates `directory` and writes a first run.json with status "running". `solver` is "mpm", "foam" or
-  /// "exact".
-  /// @throws RunError where the directory exists and is neither empty nor a run of flowrest (run.json marks
-  /// one). An earlier run in it is removed first (only files a run leaves).
-  RunWriter(const std::filesystem::path& directory, const scenes::Scene&, const std::string& solver);
+  /// Writes a first run.json with status "running"; an earlier run in the folder is removed (only files a run
+  /// leaves).
+  explicit RunWriter(RunFolder);
+  /// The same, where the folder may be taken: see RunFolder. `solver` is "mpm", "foam" or "exact".
+  RunWriter(const std::filesystem::path& directory, const scenes::Scene&, const std::string& solver,
+            Replace = Replace::failed);
+  ~RunWriter() = default;
+  RunWriter(RunWriter&&) = default;
 
-  /// Opens a run to go on with: history.csv and profiles.csv are cut back to rows with time_s <= `time`.
-  static RunWriter resume(const std::filesystem::path& directory, const scenes::Scene&, double time);
+  /// Opens a run to go on with, under the scene's settings, which may have a later end: history.csv and
+  /// profiles.csv are cut back.
+  static RunWriter resume(const std::filesystem::path& directory, const scenes::Scene&, const Continuation&);
+  static RunWriter resume(FolderLock, const scenes::Scene&, const Continuation&);
 
   /// Names the columns of history.csv; the first is time_s. Call once, before the first row (not on a resumed
   /// run, where the same columns are checked against the file's).
   void history_columns(const std::vector<std::string>& names);
+  /// Appends a row; each time once: a second row of the same time is left out.
   void history(std::span<const double> row);
 
-  /// Appends one profile: rows (time, coordinate, value). The columns follow the scene's kind:
-  /// slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s; others time_s,x_m,depth_m.
+  /// Appends one profile, each time once: rows (time, coordinate, value). The columns follow the scene's
+  /// kind: slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s; others time_s,x_m,depth_m.
   void profile(double time, std::span<const double> coordinate, std::span<const double> value);
+
+  std::optional<double> last_profile() const { return last_profile_; }  ///< s
 
   /// run.json: any key may be set; written out by `write` and by `finish`.
   nlohmann::ordered_json& info() { return info_; }
   void write();
-  /// Writes the final run.json: status, reason (may be empty) and verdict ("sound" or "noisy: why").
+  /// Writes the final run.json: status, reason (may be empty) and verdict ("sound" or "noisy: why"). A run
+  /// that failed is never sound, whatever the verdict says.
   void finish(Status, const std::string& reason, const std::string& verdict);
+  /// The same of a run that failed: its verdict is that of the failure, or the one given where that knows of
+  /// noise.
+  void fail(const Failure&, const std::string& verdict = "");
 
-  const std::filesystem::path& directory() const { return directory_; }
+  const std::filesystem::path& directory() const { return lock_.folder(); }
 
  private:
-  RunWriter() = default;
-  std::filesystem::path directory_;
+  RunWriter(FolderLock, scenes::Kind, nlohmann::ordered_json info);
+  std::filesystem::path file(const char* name) const { return directory() / name; }
+  void cut_back_to(const Continuation&);
+
+  FolderLock lock_;
   nlohmann::ordered_json info_;
-  std::ofstream history_, profiles_;
+  std::optional<OutputFile> history_, profiles_;
   std::vector<std::string> history_columns_;
   std::string profile_header_;
+  std::optional<double> last_row_, last_profile_;  ///< s
 };
 
 /// A table read from CSV: named columns of equal length.
@@ -119,6 +139,9 @@ Run read_run(const std::filesystem::path&);
 
 /// Provenance keys every run.json carries: versions, git hash, compiler, CPU model, cores.
 nlohmann::ordered_json provenance();
+
+/// The version of flowrest in a provenance, to the commit: "1.0.0 (commit 1a2b3c, modified)".
+std::string version_in(const nlohmann::ordered_json& provenance);
 
 /// The most memory that this process, or any one child it has waited for, has held at once, bytes.
 double peak_memory_bytes();

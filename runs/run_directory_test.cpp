@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 
 #include "runs/temporary_folder.h"
@@ -97,7 +101,8 @@ TEST_F(RunDirectory, RunJsonIsReplacedWhole) {
   EXPECT_EQ(nlohmann::json::parse(old)["status"], "running") << "the old file was written into";
   EXPECT_EQ(nlohmann::json::parse(text_of(path))["steps"], 12);
   for (const auto& entry : fs::directory_iterator(folder / "run"))
-    EXPECT_EQ(entry.path().filename(), "run.json") << "a temporary file stayed";
+    EXPECT_TRUE(entry.path().filename() == "run.json" || entry.path().filename() == FolderLock::file_name)
+        << "a temporary file stayed: " << entry.path();
 }
 
 TEST_F(RunDirectory, AFailedWriteLeavesTheOldFile) {
@@ -126,7 +131,7 @@ TEST_F(RunDirectory, ReplacesAnEarlierRunAndNothingElse) {
   fs::create_directory(folder / "run" / "particles");
   put(folder / "run" / "checkpoint.h5", "x");
   put(folder / "run" / "notes.txt", "mine");
-  RunWriter writer(folder / "run", scene, "foam");
+  RunWriter writer(folder / "run", scene, "foam", Replace::anything);
   EXPECT_FALSE(fs::exists(folder / "run" / "history.csv"));
   EXPECT_FALSE(fs::exists(folder / "run" / "profiles.csv"));
   EXPECT_FALSE(fs::exists(folder / "run" / "particles"));
@@ -152,6 +157,29 @@ TEST_F(RunDirectory, ResumesAtATime) {
   EXPECT_EQ(run.profiles[0].time, 0.0);
   EXPECT_EQ(run.profiles[1].time, 0.45);
   EXPECT_EQ(run.info["resumed_at_s"], nlohmann::ordered_json::array({0.4}));
+}
+
+TEST_F(RunDirectory, EveryTimeIsThereOnce) {
+  write_run(folder / "run", Status::interrupted);
+  RunWriter writer = RunWriter::resume(folder / "run", scene, {0.4, 0.4, 0.0});
+  writer.history_columns({"time_s", "spread_mm"});
+  for (const double time : {0.4, 0.5, 0.5}) writer.history(std::vector{time, 7.0});
+  for (const double time : {0.0, 0.5, 0.5})
+    writer.profile(time, std::vector{0.005, 0.015, 0.025}, std::vector{3.0, 2.0, 1.0});
+  writer.finish(Status::at_rest, "", "sound");
+  const runs::Run run = read_run(folder / "run");
+  EXPECT_THAT(run.history.at("time_s"), ElementsAre(0.0, 0.1, 0.2, 0.1 * 3, 0.4, 0.5));
+  ASSERT_EQ(run.profiles.size(), 2u);
+  for (const Profile& profile : run.profiles) EXPECT_EQ(profile.value.size(), 3u) << profile.time;
+}
+
+TEST_F(RunDirectory, AResumedRunTellsItsNewSettings) {
+  write_run(folder / "run", Status::end_time);
+  scene.time.end = 77.0;
+  RunWriter::resume(folder / "run", scene, 0.4);
+  const runs::Run run = read_run(folder / "run");
+  EXPECT_EQ(run.info["settings"]["time"]["end"], 77.0);
+  EXPECT_EQ(scenes::parse_scene(run.info["resolved_toml"], "run.json").time.end, 77.0);
 }
 
 TEST_F(RunDirectory, AResumedRunKeepsItsColumns) {
@@ -181,11 +209,80 @@ TEST_F(RunDirectory, AnInterruptedRunReadsAsFarAsItCame) {
 TEST_F(RunDirectory, ARunWithoutARowReads) {
   RunWriter(folder / "run", scene, "mpm").finish(Status::failed, "out of the domain", "sound");
   const runs::Run run = read_run(folder / "run");
+  EXPECT_EQ(run.info["verdict"], "noisy: the numerics failed") << "what failed is not sound";
   EXPECT_EQ(run.history.rows(), 0u);
   EXPECT_TRUE(run.profiles.empty());
   RunWriter(folder / "run", scene, "mpm").finish(Status::end_time, "", "sound");
   EXPECT_THAT(message_of([&] { read_run(folder / "run"); }),
               HasSubstr("neither history.csv nor profiles.csv"));
+}
+
+/// Writing past the limit on the size of files fails as it does on a full disk.
+class LimitedFiles {
+ public:
+  explicit LimitedFiles(rlim_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~LimitedFiles() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(RunDirectory, AFullDiskIsTheMachinesFaultAndSaidInRunJson) {
+  RunWriter writer(folder / "run", scene, "mpm");
+  writer.history_columns({"time_s", "spread_mm"});
+  const LimitedFiles full(30000);
+  int rows = 0;
+  try {
+    for (;; ++rows) writer.history(std::vector{0.1 * rows, 200.0});
+  } catch (const MachineError& error) {
+    EXPECT_EQ(error.what(),
+              (folder / "run" / "history.csv").string() + ": cannot be written: File too large");
+    writer.fail(failure_at_hand(0.0), "sound");
+  }
+  const runs::Run run = read_run(folder / "run");
+  EXPECT_EQ(run.status(), Status::failed);
+  EXPECT_EQ(run.info["failure"], "machine");
+  EXPECT_EQ(run.info["verdict"], "unjudged: the machine failed before the run's end");
+  EXPECT_THAT(run.info["reason"].get<std::string>(), HasSubstr("File too large"));
+  EXPECT_EQ(run.history.rows(), static_cast<std::size_t>(rows))
+      << "what was written stays, to its last whole row";
+}
+
+TEST_F(RunDirectory, OnADiskWithoutAByteLeftRunJsonIsWrittenAllTheSame) {
+  const fs::path disk = folder / "disk";
+  fs::create_directory(disk);
+  if (mount("flowrest", disk.c_str(), "tmpfs", 0, "size=1m") != 0)
+    GTEST_SKIP() << "only root may mount a disk";
+  try {
+    RunWriter writer(disk / "run", scene, "mpm");
+    writer.history_columns({"time_s", "spread_mm"});
+    try {
+      for (int row = 0;; ++row) writer.history(std::vector{0.1 * row, 200.0});
+    } catch (const MachineError&) {
+      EXPECT_TRUE(disk_is_full(disk));
+      writer.info()["more"] = std::string(20000, 'x');  // than was there before
+      writer.fail(failure_at_hand(0.0));
+    }
+    const auto info = read_run(disk / "run").info;
+    EXPECT_EQ(info["status"], "failed");
+    EXPECT_THAT(info["reason"].get<std::string>(), HasSubstr("No space left on device"));
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << error.what();
+  }
+  umount(disk.c_str());
+}
+
+TEST_F(RunDirectory, WhatCannotBeCutBackIsSaidInRunJson) {
+  write_run(folder / "run", Status::interrupted);
+  fs::create_directory(folder / "run" / "history.csv.part");
+  EXPECT_THAT(message_of([&] { RunWriter::resume(folder / "run", scene, 0.4); }), HasSubstr("history.csv"));
+  EXPECT_EQ(read_run(folder / "run").info["status"], "failed");
 }
 
 TEST_F(RunDirectory, SaysWhatIsWrongAndWhere) {

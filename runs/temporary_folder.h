@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "runs/run_directory.h"
+#include "runs/errors.h"
 
 namespace flowrest::runs {
 

@@ -54,10 +54,7 @@ void add_check(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Add a machine-readable last line");
   command->callback([options] {
-    Overrides overrides;
-    overrides.set = options->set;
-    if (!options->model.empty()) overrides.model = model_from_name(options->model);
-    const Scene scene = load_scene(options->scene, overrides);
+    const Scene scene = load_scene(options->scene, overrides_of_command_line(options->set, options->model));
     fmt::print("{}", check_text(scene));
     if (options->json) fmt::print("{}\n", check_json(scene));
   });

@@ -1,5 +1,7 @@
 #include "scenes/cost.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -88,6 +90,10 @@ double foam_steps(const Scene& scene) {
 }
 
 }  // namespace
+
+std::string bytes_in_words(double count) {
+  return count < 1e9 ? fmt::format("{:.3g} MB", count / 1e6) : fmt::format("{:.3g} GB", count / 1e9);
+}
 
 Cost mpm_cost(const Scene& scene) {
   const MpmEstimate estimate = estimate_mpm(scene);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "scenes/scene.h"
 
 /// What a run is expected to cost, from rates that are assumptions until they are measured on the machine at
@@ -10,6 +12,9 @@ struct Cost {
   double memory = 0.0;       ///< bytes
   double cpu_seconds = 0.0;  ///< to time.end; less where a run stops at rest
 };
+
+/// "1.5 GB".
+std::string bytes_in_words(double);
 
 /// Of one run with the material point solver.
 Cost mpm_cost(const Scene&);

@@ -120,6 +120,38 @@ Given model_option(Model model) {
   return given;
 }
 
+/// Settings of the command line by their keys, in their order; what cannot be read is said when the scene is.
+std::vector<std::pair<std::string, Value>> readable_settings(const std::vector<std::string>& set) {
+  std::vector<std::pair<std::string, Value>> settings;
+  for (const std::string& setting : set) {
+    Faults later;
+    for (auto& [path, value] : read_setting(setting, later).values)
+      settings.emplace_back(path, std::move(value));
+  }
+  return settings;
+}
+
+/// What stands behind the equals sign of the setting that gave a value.
+std::string text_of_setting(const Value& value) {
+  const std::string text = value.where.text();
+  const std::string given = text.substr(text.find('=') + 1);
+  const auto first = given.find_first_not_of(" \t\"'"), last = given.find_last_not_of(" \t\"'");
+  return first == std::string::npos ? "" : given.substr(first, last - first + 1);
+}
+
+/// Faults of a setting beside those before it: the same key with another value, or its rival.
+void check_against(const std::vector<std::pair<std::string, Value>>& before, const std::string& path,
+                   const Value& value, Faults& faults) {
+  const Key* key = find_key(path);
+  for (const auto& [earlier, other] : before) {
+    if (earlier == path && text_of_setting(other) != text_of_setting(value))
+      faults.add(value.where, fmt::format("{} is given twice, before as {}; allowed: one value", path,
+                                          text_of_setting(other)));
+    if (key && key->rival == earlier)
+      faults.add(value.where, fmt::format("{} and {} are both given; allowed: one of them", path, earlier));
+  }
+}
+
 bool is_expected(const Key& key, const Given& given) {
   return key.required && (key.section != "thixotropy" || given.sections.contains("thixotropy"));
 }
@@ -202,6 +234,40 @@ Scene load_scene(const std::string& scene, const Overrides& overrides) {
   const bool is_path = scene.ends_with(".toml") || scene.find('/') != std::string::npos;
   const fs::path path = is_path ? fs::path(scene) : find_scene(scene, scenes_folder());
   return parse_scene(read_text(path), path, overrides);
+}
+
+Overrides overrides_of_command_line(const std::vector<std::string>& set, const std::string& model) {
+  Overrides overrides{set, std::nullopt};
+  if (!model.empty()) overrides.model = model_from_name(model);
+  Faults faults;
+  std::vector<std::pair<std::string, Value>> before;
+  for (const auto& [path, value] : readable_settings(set)) {
+    check_against(before, path, value, faults);
+    if (overrides.model && path == "material.model" && text_of_setting(value) != model)
+      faults.add(value.where,
+                 fmt::format("material.model is given beside --model {}; allowed: one of them", model));
+    before.emplace_back(path, value);
+  }
+  faults.raise();
+  return overrides;
+}
+
+bool gives_key(const std::vector<std::string>& set, const std::string& path) {
+  const auto settings = readable_settings(set);
+  return std::any_of(settings.begin(), settings.end(),
+                     [&](const auto& setting) { return setting.first == path; });
+}
+
+void check_model_has_effect(const Scene& scene, const std::vector<std::string>& set) {
+  const auto differs = [&](Model model) { return model != scene.material.model; };
+  if (!gives_key(set, "material.model")) return;
+  if (std::none_of(scene.runs.mpm.begin(), scene.runs.mpm.end(), differs) &&
+      std::none_of(scene.runs.foam.begin(), scene.runs.foam.end(), differs))
+    return;
+  throw SceneError(fmt::format(
+      "--set material.model={}: the runs of {} have the laws that its `runs` name; allowed: runs.mpm and "
+      "runs.foam, for example --set runs.mpm={}",
+      to_string(scene.material.model), scene.path.string(), to_string(scene.material.model)));
 }
 
 std::filesystem::path scenes_folder() {

@@ -305,6 +305,13 @@ struct Overrides {
   std::optional<Model> model;  ///< --model
 };
 
+/// What a command line gives with --set and --model (empty: none), each key once.
+/// @throws SceneError where a setting would take the place of another one, or --model that of one, unseen.
+Overrides overrides_of_command_line(const std::vector<std::string>& set, const std::string& model = "");
+
+/// Whether a command line's settings give this key.
+bool gives_key(const std::vector<std::string>& set, const std::string& path);
+
 /// Reads, resolves and checks a scene. `scene` is a path or the name of a file in the scenes folder.
 /// @throws SceneError naming every fault found, never only the first.
 Scene load_scene(const std::string& scene, const Overrides& overrides = {});
@@ -318,6 +325,10 @@ std::string resolved_toml(const Scene&);
 
 /// The resolved settings as JSON text with the same keys.
 std::string resolved_json(const Scene&);
+
+/// For commands that run what a scene's `runs` name.
+/// @throws SceneError where `set` gives material.model, which `runs` overrules.
+void check_model_has_effect(const Scene&, const std::vector<std::string>& set);
 
 struct SceneSummary {
   std::string name;

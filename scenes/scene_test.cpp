@@ -256,6 +256,46 @@ TEST(Overrides, TheModelOfTheCommandLineWins) {
   EXPECT_EQ(scene.material.model, Model::papanastasiou);
 }
 
+/// What a command line's overrides are refused for.
+std::string refusal_of(const std::vector<std::string>& set, const std::string& model = "") {
+  try {
+    overrides_of_command_line(set, model);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CommandLineOverrides, NoSettingIsDroppedForAnother) {
+  EXPECT_EQ(refusal_of({"mpm.cell=0.02", "foam.cell=0.02"}), "accepted");
+  EXPECT_EQ(refusal_of({"mpm.cell=0.02", "mpm.cell=0.02"}), "accepted");
+  EXPECT_EQ(refusal_of({"mpm.cell=0.02", "mpm.cell = 0.01"}),
+            "--set mpm.cell = 0.01: mpm.cell is given twice, before as 0.02; allowed: one value");
+  EXPECT_THAT(refusal_of({"material.youngs_modulus=1e5", "material.bulk_modulus=1e5"}),
+              testing::HasSubstr("are both given; allowed: one of them"));
+  EXPECT_EQ(refusal_of({"material.model=bi-viscous"}, "bi-viscous"), "accepted");
+  EXPECT_EQ(refusal_of({"material.model=\"bi-viscous\""}, "bi-viscous"), "accepted");
+  EXPECT_THAT(refusal_of({"material.model=bi-viscous"}, "newtonian"),
+              testing::HasSubstr("material.model is given beside --model newtonian; allowed: one of them"));
+  EXPECT_THAT(refusal_of({"material.model=nonsense"}, "newtonian"), testing::HasSubstr("one of them"));
+  EXPECT_THAT(refusal_of({}, "nonsense"), testing::HasSubstr("unknown model"));
+}
+
+TEST(CommandLineOverrides, AModelThatRunsOverruleIsRefused) {
+  const auto refusal = [](const std::vector<std::string>& set) -> std::string {
+    try {
+      check_model_has_effect(load_scene("roussel-slump", {set, std::nullopt}), set);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal({}), "accepted");
+  EXPECT_EQ(refusal({"material.model=newtonian", "runs.mpm=newtonian", "runs.foam=newtonian"}), "accepted");
+  EXPECT_THAT(refusal({"material.model=newtonian"}),
+              testing::HasSubstr("for example --set runs.mpm=newtonian"));
+}
+
 TEST(Overrides, AModulusTakesThePlaceOfTheOtherOne) {
   const Scene scene = parse_scene(slump_text, "s.toml", {{"material.bulk_modulus=1e5"}, {}});
   EXPECT_NEAR(scene.material.bulk_modulus(), 1e5, 1e-6);

@@ -87,10 +87,6 @@ std::string duration(double seconds) {
   return fmt::format("{:.3g} {}", seconds / unit.first, unit.second);
 }
 
-std::string bytes(double count) {
-  return count < 1e9 ? fmt::format("{:.3g} MB", count / 1e6) : fmt::format("{:.3g} GB", count / 1e9);
-}
-
 std::string line(const std::string& name, const std::string& value, const std::string& remark = "") {
   constexpr int name_width = 28;
   constexpr int value_width = 20;
@@ -124,7 +120,7 @@ std::string mpm_text(const Scene& scene) {
   text += line("steps", fmt::format("{:.0f}", estimate.steps), "to time.end");
   text += line("particles", fmt::format("{:.0f}", estimate.particles));
   text += line("occupied cells", fmt::format("{:.0f}", estimate.cells), "at the start");
-  text += line("memory", "about " + bytes(cost.memory));
+  text += line("memory", "about " + bytes_in_words(cost.memory));
   text += line("cost", "about " + duration(cost.cpu_seconds),
                "CPU time to time.end; less where it stops at rest");
   return text;
@@ -136,7 +132,7 @@ std::string foam_text(const Scene& scene) {
   text += line("mesh cells", fmt::format("{:.0f}", estimate.cells));
   text += line("step", "at most " + duration(estimate.step));
   text += line("steps", fmt::format("at least {:.0f}", estimate.steps));
-  text += line("memory", "about " + bytes(estimate.cost.memory));
+  text += line("memory", "about " + bytes_in_words(estimate.cost.memory));
   text += line("cost", "about " + duration(estimate.cost.cpu_seconds), "CPU time to time.end");
   return text;
 }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "compare/words.h"
-#include "runs/folder.h"
+#include "runs/folder_lock.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "studies/accuracy.h"
@@ -69,7 +69,7 @@ void run_study(const StudyOptions& options) {
   const std::vector<Point> points = expand(study, options.cut);
   if (options.list) return print_list(points);
   const Folder folder{fs::absolute(options.output.empty() ? "out/studies/" + study.name : options.output)};
-  const FolderLock lock(folder.root);
+  const runs::FolderLock lock(folder.root);
   const std::size_t missing = prepare(folder, study, points);
   int code = 0;
   if (missing > 0 && !options.report_only) code = run_workflow(folder, study, points, options.workflow);
@@ -91,17 +91,31 @@ void add_study(CLI::App& app) {
   auto options = std::make_shared<StudyOptions>();
   CLI::App* command = app.add_subcommand("study", "Sweep settings of a scene: accuracy against cost");
   command->add_option("study", options->study, "A study's name, or the path of its file")->required();
-  command->add_option("-o,--output", options->output,
-                      "Folder of the runs and the results (out/studies/STUDY)");
+  auto* output = command->add_option("-o,--output", options->output,
+                                     "Folder of the runs and the results (out/studies/STUDY)");
   command->add_option("--cut", options->cut, "A named part of the study, such as quick");
-  command->add_option("-j,--jobs", options->workflow.cores, "Cores to use (all)")->check(CLI::PositiveNumber);
-  command->add_option("--profile", options->workflow.profile,
-                      "A Snakemake profile: where the runs are made, such as studies/workflow/slurm");
-  command->add_flag("--list", options->list, "Say what would be run and for how long; run nothing");
-  command->add_flag("--report-only", options->report_only, "Make no run; report on those there are");
-  command->add_flag("--keep", options->keep,
-                    "Keep what was found for `flowrest run --accuracy`, in scenes/studies/STUDY.known.json");
-  command->add_flag("--json", options->json, "End with a machine-readable line");
+  auto* jobs = command->add_option("-j,--jobs", options->workflow.cores, "Cores to use (all)")
+                   ->check(CLI::PositiveNumber);
+  auto* profile =
+      command
+          ->add_option("--profile", options->workflow.profile,
+                       "A Snakemake profile: where the runs are made, such as studies/workflow/slurm")
+          ->excludes(jobs);
+  auto* report_only =
+      command->add_flag("--report-only", options->report_only, "Make no run; report on those there are")
+          ->excludes(jobs)
+          ->excludes(profile);
+  auto* keep = command->add_flag(
+      "--keep", options->keep,
+      "Keep what was found for `flowrest run --accuracy`, in scenes/studies/STUDY.known.json");
+  auto* json = command->add_flag("--json", options->json, "End with a machine-readable line");
+  command->add_flag("--list", options->list, "Say what would be run and for how long; run nothing")
+      ->excludes(output)
+      ->excludes(jobs)
+      ->excludes(profile)
+      ->excludes(report_only)
+      ->excludes(keep)
+      ->excludes(json);
   command->add_flag("--quiet", options->workflow.quiet, "Print no progress");
   command->callback([options] { run_study(*options); });
 }
@@ -161,7 +175,7 @@ void add_verify(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "Print no progress");
   command->callback([options, output] {
-    runs::make_folder(*output);
+    const runs::FolderLock lock(*output);
     const int code = run_verification(*output, *options);
     if (code != 0) throw CLI::RuntimeError(code);
   });

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runs/machine.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 
@@ -27,46 +28,22 @@ Json read_json(const fs::path& path) {
   return file ? Json::parse(file, nullptr, false) : Json(Json::value_t::discarded);
 }
 
-/// The settings that a run of this solver hangs on: neither what its scene is called, nor which runs it
-/// names, nor the other solver's settings, nor what only another law reads.
-Json bearing_on(const std::string& solver, Json settings) {
-  if (!settings.is_object()) return settings;
-  for (const char* name : {"title", "runs", solver == "mpm" ? "foam" : "mpm"}) settings.erase(name);
-  if (settings.contains("foam") && settings.value("kind", "") != "slump")
-    settings["foam"].erase("step_growth");
-  if (settings.contains("material")) {
-    Json& material = settings["material"];
-    const std::string model = material.value("model", "");
-    for (const auto& [law, key] :
-         {std::pair{"papanastasiou", "regularisation_time"}, {"bi-viscous", "critical_shear_rate"}})
-      if (model != law) material.erase(key);
-  }
-  return settings;
-}
-
-/// Whether a run was made with the settings that were asked for. What a scene leaves to OpenFOAM, the rows at
-/// the base (0) and the time in which air rises, its run says.
-bool made_as_asked(const std::string& solver, Json made, const Json& asked) {
-  const auto foam = asked.find("foam");
-  if (foam != asked.end() && made.contains("foam")) {
-    if (foam->value("base_rows", 0) == 0) made["foam"]["base_rows"] = 0;
-    if (!foam->contains("air_rise_time")) made["foam"].erase("air_rise_time");
-  }
-  return bearing_on(solver, std::move(made)) == bearing_on(solver, asked);
+bool by_machine(const Json& info) {
+  return info.value("failure", "") == runs::to_string(runs::Fault::machine);
 }
 
 /// How the run directory says that this run ended; missing where it says anything else.
 Outcome ending_in(const fs::path& directory, const std::string& solver, const Json& settings) {
   try {
     const runs::Run run = runs::read_run(directory);
-    if (!made_as_asked(solver, run.info.value("settings", Json()), settings)) return {};
+    if (!runs::same_settings(solver, run.info.value("settings", Json()), settings)) return {};
     const std::string reason = run.info.value("reason", "");
     switch (run.status()) {
       case runs::Status::at_rest:
       case runs::Status::end_time:
         return {Ending::finished, reason};
       case runs::Status::failed:
-        return {Ending::stopped, reason};
+        return by_machine(run.info) ? Outcome{} : Outcome{Ending::stopped, reason};
       default:
         return {};
     }
@@ -108,8 +85,8 @@ void mark(const Folder& folder, const Job& job, const Outcome& outcome, double w
 /// Whether the run directory holds a part of this run that can be gone on with.
 bool has_begun(const Folder& folder, const Job& job) {
   const Json info = read_json(folder.run(job.id) / "run.json");
-  return info.is_object() && made_as_asked(job.solver, info.value("settings", Json()), job.settings) &&
-         info.value("status", "") != to_string(runs::Status::failed);
+  return info.is_object() && runs::same_settings(job.solver, info.value("settings", Json()), job.settings) &&
+         (info.value("status", "") != to_string(runs::Status::failed) || by_machine(info));
 }
 
 /// From the last checkpoint where this run left one, else from the start.
@@ -119,8 +96,14 @@ std::vector<std::string> arguments_of(const Folder& folder, const Job& job, bool
   if (begun)
     arguments.insert(arguments.end(), {"--resume", run.string()});
   else
-    arguments.insert(arguments.end(), {folder.scene(job.id).string(), "-o", run.string()});
+    arguments.insert(arguments.end(), {folder.scene(job.id).string(), "-o", run.string(), "--force"});
   return arguments;
+}
+
+/// Nobody may be writing there still: a run that outlived who waited for it, say.
+void remove_run(const fs::path& run) {
+  const runs::FolderLock lock(run);
+  fs::remove_all(run);
 }
 
 /// A run directory that cannot be gone on with makes room for a new one.
@@ -128,8 +111,8 @@ void clear_unusable(const Folder& folder, const Job& job) {
   const fs::path run = folder.run(job.id);
   const Json info = read_json(run / "run.json");
   if (fs::exists(run) &&
-      (!info.is_object() || !made_as_asked(job.solver, info.value("settings", Json()), job.settings)))
-    fs::remove_all(run);
+      (!info.is_object() || !runs::same_settings(job.solver, info.value("settings", Json()), job.settings)))
+    remove_run(run);
 }
 
 Outcome outcome_of_end(const Folder& folder, const Job& job, const runs::ProcessEnd& end, bool too_long) {
@@ -157,19 +140,21 @@ double seconds_since(Clock::time_point begin) {
 Outcome attempt(const Folder& folder, const Job& job, bool begun, Clock::time_point begin) {
   runs::Process process(fs::read_symlink("/proc/self/exe"), arguments_of(folder, job, begun),
                         fs::current_path(), folder.log(job.id), {});
-  bool too_long = false, asked = false;
+  bool too_long = false;
   while (!process.poll()) {
-    too_long = too_long || seconds_since(begin) > job.longest_run;
-    if ((too_long || runs::InterruptGuard::count() > 0) && !asked) {
+    process.hand_on_interrupts();
+    if (!too_long && seconds_since(begin) > job.longest_run) {
       process.signal(SIGINT);
-      asked = true;
+      too_long = true;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   const runs::ProcessEnd end = *process.poll();
-  constexpr int program_missing = 4;
+  constexpr int program_missing = 4, machine_failed = 5;
   if (end.exit_code == program_missing && end.signal == 0)
     throw runs::MissingProgram(runs::last_words(folder.log(job.id)));
+  if (end.exit_code == machine_failed && end.signal == 0)
+    throw runs::MachineError(runs::last_words(folder.log(job.id)));
   return outcome_of_end(folder, job, end, too_long);
 }
 
@@ -188,10 +173,15 @@ Outcome outcome_of(const Folder& folder, const Point& point) {
   const Json settings = Json::parse(scenes::resolved_json(*point.scene));
   const std::string ending = marked.value("ending", ""), reason = marked.value("reason", "");
   const std::string solver = to_string(point.solver);
-  if (!made_as_asked(solver, marked.value("settings", Json()), settings)) return {};
+  if (!runs::same_settings(solver, marked.value("settings", Json()), settings)) return {};
   for (const Ending without_data : {Ending::refused, Ending::crashed, Ending::too_long})
     if (ending == to_string(without_data)) return {without_data, reason};
   return ending_in(folder.run(point.id), solver, settings);
+}
+
+bool ended_by_machine(const Folder& folder, const std::string& id) {
+  const Json info = read_json(folder.run(id) / "run.json");
+  return info.is_object() && by_machine(info);
 }
 
 int run_job(const fs::path& root, const std::string& id) {
@@ -211,7 +201,7 @@ int run_job(const fs::path& root, const std::string& id) {
   Outcome outcome = attempt(folder, job, begun, begin);
   if (begun && (outcome.ending == Ending::crashed || outcome.ending == Ending::refused)) {
     // What it left could not be gone on with, which says nothing of the run.
-    fs::remove_all(folder.run(id));
+    remove_run(folder.run(id));
     outcome = attempt(folder, job, false, begin);
   }
   constexpr int interrupted = 130;

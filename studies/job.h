@@ -40,9 +40,13 @@ struct Outcome {
 /// it was this run (the same resolved settings), and can be read.
 Outcome outcome_of(const Folder&, const Point&);
 
+/// Whether the machine ended a run, as where the disk is full: it is to be gone on with and says nothing of
+/// the settings.
+bool ended_by_machine(const Folder&, const std::string& id);
+
 /// Makes the run of one job of jobs.json, or goes on with it, and marks it as ended. Called by the workflow.
 /// @return the exit code: 0 where the run has ended, whatever way; 130 where it was interrupted; 4 where a
-/// program is missing; 1 where it was killed.
+/// program is missing; 5 where the machine failed; 1 where it was killed.
 int run_job(const std::filesystem::path& root, const std::string& id);
 
 }  // namespace flowrest::studies

@@ -1,22 +1,16 @@
 #include "studies/workflow.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
-#include "runs/folder.h"
+#include "runs/console.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
@@ -98,6 +92,9 @@ std::vector<std::string> snakemake_arguments(const Folder& folder, const Workflo
   return arguments;
 }
 
+/// How long a run that was interrupted may take to leave a state that can be gone on from, s.
+constexpr double longest_goodbye = 120.0;
+
 /// What went wrong, for the user: the tail of Snakemake's own log.
 std::string tail_of(const fs::path& log) {
   std::ifstream file(log);
@@ -112,24 +109,6 @@ std::string tail_of(const fs::path& log) {
 }
 
 }  // namespace
-
-FolderLock::FolderLock(const fs::path& root) {
-  runs::make_folder(root);
-  const fs::path path = root / ".lock";
-  // Not closed on exec: what we start goes on holding the folder if we are killed.
-  file_ = open(path.c_str(), O_RDWR | O_CREAT, 0644);
-  if (file_ < 0)
-    throw runs::RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-  if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-  close(file_);
-  throw runs::RunError(fmt::format(
-      "{}: another study is at work here, or the last runs of one that was killed; wait for them or end them",
-      root.string()));
-}
-
-FolderLock::~FolderLock() {
-  if (file_ >= 0) close(file_);
-}
 
 std::size_t prepare(const Folder& folder, const Study& study, const std::vector<Point>& points) {
   for (const char* name : {"jobs", "runs", "logs", "ended"}) fs::create_directories(folder.root / name);
@@ -160,26 +139,29 @@ int run_workflow(const Folder& folder, const Study& study, const std::vector<Poi
   runs::Progress progress("study " + study.name, static_cast<double>(runs.size()), options.quiet);
   const fs::path log = folder.root / "snakemake.log";
   runs::Process process(*snakemake, snakemake_arguments(folder, options), folder.root, log, {});
-  int asked = 0;
+  bool interrupted = false;
   std::size_t shown = runs.size() + 1;
   while (!process.poll()) {
-    if (runs::InterruptGuard::count() > asked) {
-      process.signal(SIGINT);
-      asked = runs::InterruptGuard::count();
-    }
+    interrupted = process.hand_on_interrupts();
     const std::size_t done = ended(folder, runs);
     if (done != shown)
       progress.update(static_cast<double>(done), fmt::format("{} of {} runs", done, runs.size()));
     shown = done;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
+  // Interrupted again, Snakemake may leave the runs that it was waiting for.
+  if (interrupted) process.end_survivors(longest_goodbye);
   const std::size_t done = ended(folder, runs);
   progress.finish(fmt::format("{} of {} runs have ended", done, runs.size()));
-  if (asked > 0) return 130;
+  if (interrupted) return 130;
   if (process.poll()->good() && done == runs.size()) return 0;
-  fmt::print(stderr, "Some runs could not be made ({}); the end of {}:\n{}", process.poll()->how(),
-             log.string(), tail_of(log));
-  return 1;
+  runs::say(stderr, fmt::format("Some runs could not be made ({}); the end of {}:\n{}", process.poll()->how(),
+                                log.string(), tail_of(log)));
+  constexpr int machine_failed = 5;
+  return std::any_of(runs.begin(), runs.end(),
+                     [&](const Point* p) { return ended_by_machine(folder, p->id); })
+             ? machine_failed
+             : 1;
 }
 
 }  // namespace flowrest::studies

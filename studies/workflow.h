@@ -17,25 +17,12 @@ struct WorkflowOptions {
   bool quiet = false;
 };
 
-/// Holds the study's folder while it lives, so that two studies never write into one; its children hold it
-/// too.
-class FolderLock {
- public:
-  /// @throws runs::RunError where another study is at work in the folder.
-  explicit FolderLock(const std::filesystem::path& root);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int file_ = -1;
-};
-
 /// Writes what is to be run: jobs.json, a scene for every job, the Snakefile; and takes away every mark whose
 /// run does not stand up to it. @return the jobs still to be made.
 std::size_t prepare(const Folder&, const Study&, const std::vector<Point>&);
 
-/// Makes the runs that are missing. @return 0; 130 where interrupted; 1 where some could not be made.
+/// Makes the runs that are missing. @return 0; 130 where interrupted; 5 where the machine failed, as on a
+/// full disk; 1 where some could not be made for another reason.
 /// @throws runs::MissingProgram where Snakemake is not installed.
 int run_workflow(const Folder&, const Study&, const std::vector<Point>&, const WorkflowOptions&);
 

@@ -40,6 +40,14 @@ Bingham material_of(const Scene& scene, std::optional<double> flocculation = std
           scene.material.plastic_viscosity};
 }
 
+/// Opens the folder of a solution. What it takes besides the scene stands in its run.json.
+runs::RunWriter open_run(const std::filesystem::path& directory, const Scene& scene,
+                         std::optional<double> flocculation, runs::Replace replace) {
+  auto beside = nlohmann::ordered_json::object();
+  beside["flocculation"] = flocculation ? nlohmann::ordered_json(*flocculation) : nlohmann::ordered_json();
+  return runs::RunWriter(runs::RunFolder(directory, scene, "exact", replace, beside));
+}
+
 /// Points from the middle to the edge, closer towards the edge where the depth falls steeply, and one just
 /// beyond it.
 std::vector<double> points_to(double edge) {
@@ -55,8 +63,9 @@ std::vector<double> points_to(double edge) {
 
 template <class Profile>
 ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory, const Profile& profile,
-                     double edge, double volume, const std::string& label, const std::string& source) {
-  runs::RunWriter writer(directory, scene, "exact");
+                     double edge, double volume, const std::string& label, const std::string& source,
+                     std::optional<double> flocculation, runs::Replace replace) {
+  runs::RunWriter writer = open_run(directory, scene, flocculation, replace);
   std::vector<double> coordinate = points_to(edge), depth;
   for (const double r : coordinate) depth.push_back(profile.depth(r));
   const double spread_depth = scene.gauges.spread_depth, spread = profile.spread(spread_depth);
@@ -75,7 +84,7 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
 }
 
 std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::path& directory,
-                                   std::optional<double> flocculation) {
+                                   std::optional<double> flocculation, runs::Replace replace) {
   const Bingham material = material_of(scene, flocculation);
   const auto& cone = scene.slump();
   if (scene.base.law != scenes::Wall::no_slip)
@@ -105,21 +114,23 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
     const auto plane = plane_slump(material, scene.forces.gravity, half_area);
     must_spread(plane.half_width);
     return {write_slump(scene, directory / "leading-order", plane, plane.half_width, 2.0 * half_area,
-                        "exact, leading order (plane)", "h^2 = 2 tau0 (X - x)/(rho g)")};
+                        "exact, leading order (plane)", "h^2 = 2 tau0 (X - x)/(rho g)", flocculation,
+                        replace)};
   }
   const auto leading = leading_order_slump(material, scene.forces.gravity, cone.volume());
   const auto second = second_order_slump(material, scene.forces.gravity, cone.volume());
   must_spread(leading.radius);
   return {
       write_slump(scene, directory / "leading-order", leading, leading.radius, leading.volume(),
-                  "exact, leading order", "Yu et al. 2026, Eq. 51, with h = sqrt(2 tau0 (R - r)/(rho g))"),
+                  "exact, leading order", "Yu et al. 2026, Eq. 51, with h = sqrt(2 tau0 (R - r)/(rho g))",
+                  flocculation, replace),
       write_slump(scene, directory / "second-order", second, second.radius, second.volume(),
-                  "exact, second order",
-                  "h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)), a = 1.36 tau0/(rho g)")};
+                  "exact, second order", "h = a + sqrt(a^2 + 2 tau0 (R - r)/(rho g)), a = 1.36 tau0/(rho g)",
+                  flocculation, replace)};
 }
 
 std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path& directory,
-                                 std::optional<double> flocculation) {
+                                 std::optional<double> flocculation, runs::Replace replace) {
   const Bingham material = material_of(scene, flocculation);
   const double height = scene.duct().height;
   if (scene.base.law != scenes::Wall::no_slip)
@@ -128,7 +139,7 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
     refuse(scene, "without a plastic viscosity the flow has no steady state");
   if (scene.forces.body_force.empty()) refuse(scene, "no body force drives the duct");
 
-  runs::RunWriter writer(directory / "steady", scene, "exact");
+  runs::RunWriter writer = open_run(directory / "steady", scene, flocculation, replace);
   writer.info()["model"] = "bingham";
   writer.info()["label"] = "exact, steady";
   writer.info()["source"] = "Yu et al. 2026, Eqs. 48-50";
@@ -164,7 +175,7 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
 }
 
 std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::path& directory,
-                                    std::optional<double> flocculation) {
+                                    std::optional<double> flocculation, runs::Replace replace) {
   const Bingham material = material_of(scene, flocculation);
   const auto& box = scene.l_box();
   if (scene.base.law == scenes::Wall::slip)
@@ -185,12 +196,11 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
   const double end = 1e3 * shape.end_height(), start = 1e3 * shape.start_height();
   const std::string label =
       flocculation ? fmt::format("exact, arrested, flocculation {:g}", *flocculation) : "exact, arrested";
-  runs::RunWriter writer(directory / "arrested", scene, "exact");
+  runs::RunWriter writer = open_run(directory / "arrested", scene, flocculation, replace);
   writer.info()["model"] = "bingham";
   writer.info()["label"] = label;
   writer.info()["source"] =
       "yield stress on floor and side walls against the weight (Nguyen, Roussel and Coussot 2006), no bars";
-  if (flocculation) writer.info()["flocculation"] = *flocculation;
   writer.history_columns({"time_s", "front_mm", "end_height_mm", "start_height_mm", "volume_m3"});
   writer.history(std::vector{scene.time.end, front, end, start, volume});
   std::vector<double> coordinate = points_to(shape.front()), depth;
@@ -207,20 +217,25 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
 
 }  // namespace
 
-ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory, bool plug_pulls) {
+void check_film(const Scene& scene) {
   if (scene.kind != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
     refuse(scene, "a thin film spreads from a slump about its axis");
   if (scene.thixotropy || scene.base.law != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
       !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0))
     refuse(scene,
            "the film is of Bingham material without thixotropy, under gravity, on a base without slip");
+}
+
+ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directory, bool plug_pulls,
+                        runs::Replace replace) {
+  check_film(scene);
   constexpr int rings = 225;
   const Bingham material = material_of(scene);
   const auto& cone = scene.slump();
   const double gravity = scene.forces.gravity;
   SpreadingFilm film = bingham_film(material, gravity, cone.cone_radius_bottom, cone.volume(),
                                     cone.domain_radius, rings, plug_pulls);
-  runs::RunWriter writer(directory, scene, "exact");
+  runs::RunWriter writer = open_run(directory, scene, std::nullopt, replace);
   writer.info()["model"] = "bingham";
   const std::string label = plug_pulls ? "thin film under its plug's pull, Bingham" : "thin film, Bingham";
   writer.info()["label"] = label;
@@ -248,17 +263,17 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
 }
 
 std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem::path& directory,
-                                       std::optional<double> flocculation) {
+                                       std::optional<double> flocculation, runs::Replace replace) {
   if (std::filesystem::exists(directory / "run.json"))
     throw RunError(fmt::format("{}: is itself a run; name the folder that shall hold the exact runs",
                                directory.string()));
   switch (scene.kind) {
     case scenes::Kind::slump:
-      return write_slumps(scene, directory, flocculation);
+      return write_slumps(scene, directory, flocculation, replace);
     case scenes::Kind::duct:
-      return write_duct(scene, directory, flocculation);
+      return write_duct(scene, directory, flocculation, replace);
     case scenes::Kind::l_box:
-      return write_channel(scene, directory, flocculation);
+      return write_channel(scene, directory, flocculation, replace);
     default:
       break;
   }

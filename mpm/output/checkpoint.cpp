@@ -14,9 +14,29 @@ namespace {
 /// RunState as a row of numbers, and back: one list of members serves both.
 template <class State, class Use>
 void each_member(State& s, Use use) {
-  for (auto* member : {&s.time, &s.steps, &s.step, &s.largest_speed, &s.largest_pressure, &s.dissipated,
-                       &s.work, &s.initial_energy, &s.calm_since, &s.cpu, &s.wall, &s.histories, &s.profiles,
-                       &s.snapshots, &s.checkpoints, &s.noise.judged_until})
+  for (auto* member : {&s.time,
+                       &s.steps,
+                       &s.step,
+                       &s.largest_speed,
+                       &s.largest_pressure,
+                       &s.dissipated,
+                       &s.work,
+                       &s.initial_energy,
+                       &s.calm_since,
+                       &s.cpu,
+                       &s.wall,
+                       &s.histories,
+                       &s.profiles,
+                       &s.snapshots,
+                       &s.checkpoints,
+                       &s.last_profile,
+                       &s.last_snapshot,
+                       &s.noise.judged_until,
+                       &s.stages.particles_to_grid,
+                       &s.stages.nodes,
+                       &s.stages.grid_to_particles,
+                       &s.stages.sorting,
+                       &s.stages.volumes})
     use(*member);
   for (auto* noise : {&s.noise.within_cells, &s.noise.between_steps})
     for (auto* member : {&noise->time, &noise->path, &noise->motion, &noise->first, &noise->last})
@@ -32,6 +52,7 @@ void write_checkpoint(const std::filesystem::path& directory, const Checkpoint& 
   std::vector<double> run;
   each_member(c.run, [&](const double& v) { run.push_back(v); });
   file.write("/run", run);
+  file.write("/noise_meter", c.noise_meter);
   file.attribute("/", "scene", c.scene);
   std::vector<std::int32_t> cells;
   for (const auto& cell : c.solver.cells) cells.insert(cells.end(), cell.begin(), cell.end());
@@ -62,6 +83,7 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory
   };
   if (next != run.size())
     throw damaged(fmt::format("holds {} run values, {} are expected", run.size(), next));
+  c.noise_meter = file.read_doubles("/noise_meter");
   c.scene = file.read_text("/", "scene");
   const auto cells = file.read_integers("/cells");
   c.solver.cells.resize(cells.size() / 3);

@@ -24,13 +24,18 @@ struct RunState {
   double cpu = 0.0;               ///< s, spent so far
   double wall = 0.0;              ///< s
   double histories = 0.0, profiles = 0.0, snapshots = 0.0, checkpoints = 0.0;  ///< outputs made so far
+  /// s, the latest profile and snapshot made at their intervals: the end of a run adds one that a longer run
+  /// does not have. -1 before the first.
+  double last_profile = -1.0, last_snapshot = -1.0;
   NoiseRecord noise;
+  StageTimes stages;  ///< so far
 };
 
 struct Checkpoint {
   RunState run;
   SolverState solver;
-  std::string scene;  ///< resolved TOML
+  std::string scene;                ///< resolved TOML
+  std::vector<double> noise_meter;  ///< its state
 };
 
 /// Writes `directory`/checkpoint.h5 atomically. @throws runs::RunError

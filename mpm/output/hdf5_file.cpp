@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <utility>
 
-#include "runs/run_directory.h"
+#include "runs/machine.h"
 
 namespace flowrest::mpm {
 
@@ -43,7 +44,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   file.path_ = path;
   file.temporary_ = path.string() + ".part";
   file.file_ = H5Fcreate(file.temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (file.file_ < 0) file.fail("cannot be created");
+  if (file.file_ < 0) runs::cannot_be_written(file.temporary_, errno);
   return file;
 }
 
@@ -73,9 +74,14 @@ void Hdf5File::fail(const std::string& what) const {
   throw runs::RunError(fmt::format("{}: {}", path_.string(), what));
 }
 
+/// In a file that could be created nothing but the machine is in the way of more.
+void Hdf5File::no_room(const std::string& what) const {
+  throw runs::MachineError(fmt::format("{}: {} (is the disk full?)", path_.string(), what));
+}
+
 void Hdf5File::group(const std::string& path) {
   const Handle made(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  if (!made.valid()) fail("cannot hold the group " + path);
+  if (!made.valid()) no_room("cannot hold the group " + path);
 }
 
 void Hdf5File::write(const std::string& path, hid_t type, const void* data, std::size_t count,
@@ -85,7 +91,7 @@ void Hdf5File::write(const std::string& path, hid_t type, const void* data, std:
   const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                    H5Dclose);
   if (!set.valid() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-    fail("cannot hold the dataset " + path + " (is the disk full?)");
+    no_room("cannot hold the dataset " + path);
 }
 
 void Hdf5File::write(const std::string& path, std::span<const double> v, std::size_t columns) {
@@ -112,7 +118,7 @@ void Hdf5File::attribute(const std::string& group, const std::string& name,
                                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                     H5Aclose);
   if (!made.valid() || H5Awrite(made, H5T_NATIVE_INT64, values.data()) < 0)
-    fail("cannot hold the attribute " + name);
+    no_room("cannot hold the attribute " + name);
 }
 
 void Hdf5File::attribute(const std::string& group, const std::string& name, const std::string& text) {
@@ -123,7 +129,7 @@ void Hdf5File::attribute(const std::string& group, const std::string& name, cons
   const Handle made(H5Acreate_by_name(file_, group.c_str(), name.c_str(), type, space, H5P_DEFAULT,
                                       H5P_DEFAULT, H5P_DEFAULT),
                     H5Aclose);
-  if (!made.valid() || H5Awrite(made, type, text.c_str()) < 0) fail("cannot hold the attribute " + name);
+  if (!made.valid() || H5Awrite(made, type, text.c_str()) < 0) no_room("cannot hold the attribute " + name);
 }
 
 namespace {
@@ -166,10 +172,13 @@ std::string Hdf5File::read_text(const std::string& group, const std::string& nam
 void Hdf5File::commit() {
   const herr_t closed = H5Fclose(file_);
   file_ = -1;
-  if (closed < 0) fail("cannot be completed (is the disk full?)");
   std::error_code error;
+  if (closed < 0) {
+    std::filesystem::remove(temporary_, error);
+    no_room("cannot be completed");
+  }
   std::filesystem::rename(temporary_, path_, error);
-  if (error) fail("cannot be put in place: " + error.message());
+  if (error) runs::cannot_be_written(path_, error.value());
 }
 
 }  // namespace flowrest::mpm

@@ -10,7 +10,8 @@
 namespace flowrest::mpm {
 
 /// An HDF5 file written to a temporary name and put in place by `commit`, or read; closed by itself.
-/// Every method throws runs::RunError naming the file and the dataset where HDF5 refuses.
+/// Every method throws where HDF5 refuses, naming the file and the dataset: runs::MachineError on writing,
+/// runs::RunError on reading.
 class Hdf5File {
  public:
   static Hdf5File create(const std::filesystem::path&);
@@ -42,6 +43,7 @@ class Hdf5File {
   Hdf5File() = default;
   void write(const std::string& path, hid_t type, const void* data, std::size_t count, std::size_t columns);
   [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void no_room(const std::string& what) const;
 
   std::filesystem::path path_, temporary_;
   hid_t file_ = -1;

@@ -181,6 +181,39 @@ bool NoiseMeter::add(Solver& solver, double step) {
   return true;
 }
 
+std::vector<double> NoiseMeter::state() const {
+  std::vector<double> numbers = {static_cast<double>(since_begin_)};
+  numbers.insert(numbers.end(), steps_.begin(), steps_.end());
+  const int under_way = since_begin_ < static_cast<int>(moments_.size()) ? since_begin_ : 0;
+  for (int moment = 0; moment < under_way; ++moment) {
+    const auto& cells = moments_[static_cast<std::size_t>(moment)];
+    numbers.push_back(static_cast<double>(cells.size()));
+    for (const CellMotion& cell : cells) {
+      numbers.insert(numbers.end(), cell.cell.begin(), cell.cell.end());
+      numbers.push_back(cell.mass);
+      numbers.insert(numbers.end(), cell.velocity.begin(), cell.velocity.end());
+    }
+  }
+  return numbers;
+}
+
+void NoiseMeter::restore(const std::vector<double>& state) {
+  std::size_t next = 0;
+  const auto take = [&] { return state.at(next++); };
+  since_begin_ = static_cast<int>(take());
+  for (double& step : steps_) step = take();
+  for (auto& cells : moments_) cells.clear();
+  for (std::size_t moment = 0; next < state.size(); ++moment) {
+    auto& cells = moments_.at(moment);
+    for (auto left = static_cast<std::size_t>(take()); left > 0; --left) {
+      CellMotion& cell = cells.emplace_back();
+      for (auto& index : cell.cell) index = static_cast<std::int32_t>(take());
+      cell.mass = take();
+      for (double& v : cell.velocity) v = take();
+    }
+  }
+}
+
 void NoiseRecord::add(double time, const VelocityNoise& noise) {
   note(within_cells, judged_until, time, noise.within_cells, noise.speed, within_cells_bound);
   note(between_steps, judged_until, time, noise.between_steps, noise.speed, between_steps_bound);

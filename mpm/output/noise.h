@@ -46,6 +46,11 @@ class NoiseMeter {
   bool add(Solver&, double step);
   const VelocityNoise& noise() const { return noise_; }
 
+  /// Where it stands between two measurements and in the midst of one, for checkpoints.
+  std::vector<double> state() const;
+  /// @throws std::out_of_range where that is no state.
+  void restore(const std::vector<double>& state);
+
  private:
   int dimension_;
   double cell_;

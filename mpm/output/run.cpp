@@ -1,13 +1,15 @@
 #include "mpm/output/run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <limits>
+#include <new>
 #include <optional>
+#include <utility>
 
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/gauges.h"
@@ -15,8 +17,13 @@
 #include "mpm/output/snapshot.h"
 #include "mpm/sampling/sampling.h"
 #include "mpm/solver/settings.h"
+#include "runs/console.h"
 #include "runs/depth.h"
+#include "runs/earlier_run.h"
+#include "runs/machine.h"
 #include "runs/progress.h"
+#include "runs/run_folder.h"
+#include "scenes/cost.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::mpm {
@@ -55,9 +62,29 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// When a run ends, s: where a row of the history falls on time.end but for round-off, the time that the row
+/// has in a longer run.
+double end_of(const scenes::Scene& scene) {
+  const double interval = scene.output.history_interval;
+  const double row = std::round(scene.time.end / interval) * interval;
+  return row > 0.0 && std::abs(row - scene.time.end) <= 1e-12 * scene.time.end ? row : scene.time.end;
+}
+
+/// Where a run stands between the rows of its history.
+struct Rows {
+  double last;  ///< s
+  double next;  ///< s
+};
+Rows rows_about(const RunState& state, const scenes::Scene& scene) {
+  const double interval = scene.output.history_interval;
+  return {(state.histories - 1.0) * interval, state.histories * interval};
+}
+
 class MpmRun {
  public:
-  MpmRun(const scenes::Scene& scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint)
+  /// `open` opens the run directory; what is missing is said before.
+  MpmRun(const scenes::Scene& scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint,
+         const std::function<runs::RunWriter()>& open)
       : scene_(scene),
         options_(options),
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
@@ -67,29 +94,28 @@ class MpmRun {
         // Before anything is written: seeding may need a program that is missing.
         solver_(checkpoint ? make_solver(settings_, checkpoint->solver)
                            : make_solver(settings_, seed_particles(scene))),
-        writer_(checkpoint ? runs::RunWriter::resume(options.directory, scene, checkpoint->run.time)
-                           : runs::RunWriter(options.directory, scene, "mpm")),
-        snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.time : -1.0),
+        writer_(open()),
+        snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.last_snapshot : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
                   scene.time.end, options.quiet) {
     if (checkpoint) {
-      state_ = checkpoint->run;
-      cpu_begin_ -= state_.cpu;
-      wall_begin_ -= state_.wall;
+      take_up(*checkpoint);
     } else {
       state_.largest_pressure = scenes::pressure_at_rest(scene);
+      std::filesystem::remove(options.directory / "checkpoint.h5");
+      writer_.info()["occupied_cells_at_start"] = solver_->occupied_cells();
     }
-    if (!checkpoint) std::filesystem::remove(options.directory / "checkpoint.h5");
-    describe();
-    writer_.history_columns(gauges_.columns());
   }
 
   RunResult run() {
     try {
+      describe();
+      writer_.history_columns(gauges_.columns());
       return loop();
-    } catch (const runs::NumericsError& error) {
-      return_after_failure(error.what());
-      throw;
+    } catch (const std::exception&) {
+      const runs::Failure failure = runs::failure_at_hand(scenes::mpm_cost(scene_).memory);
+      note_failure(failure);
+      runs::throw_again(failure);
     }
   }
 
@@ -99,29 +125,49 @@ class MpmRun {
     return s;
   }
 
+  void take_up(const Checkpoint& checkpoint) {
+    state_ = checkpoint.run;
+    noise_.restore(checkpoint.noise_meter);
+    cpu_begin_ -= state_.cpu;
+    wall_begin_ -= state_.wall;
+    stages_before_ = state_.stages;
+    // Their interval may be another one from here on.
+    state_.checkpoints = 0.0;
+    while (state_.checkpoints * scene_.output.checkpoint_interval * (1.0 - 1e-12) <= last_row())
+      state_.checkpoints += 1.0;
+  }
+
   RunResult loop() {
     if (state_.histories == 0.0) {
       gauge();
       state_.initial_energy = total_energy();
       output();
     } else {
-      gauge();
+      measure();
+      // What came to rest in the row that it is gone on from goes no further.
+      const bool rests = state_.steps > 0.0 && state_.time == last_row() && at_rest();
+      if (rests || state_.time >= end_) checkpoint();  // under the settings that it has now
+      if (rests) return stop(runs::Status::at_rest, "");
     }
-    noise_.begin();
-    while (state_.time < scene_.time.end) {
+    while (state_.time < end_) {
       if (options_.interrupted())
         return stop(runs::Status::interrupted,
                     "interrupted; go on with: flowrest mpm --resume " + options_.directory.string());
       advance();
-      if (due(state_.histories, scene_.output.history_interval) || state_.time >= scene_.time.end) {
+      if (due(state_.histories, scene_.output.history_interval) || state_.time >= end_) {
         gauge();
         output();
-        noise_.begin();
         if (at_rest()) return stop(runs::Status::at_rest, "");
       }
     }
     return stop(runs::Status::end_time, "");
   }
+
+  double last_row() const { return rows_about(state_, scene_).last; }
+  double next_row() const { return rows_about(state_, scene_).next; }
+  /// Whether the steps since the last row are those of a longer run, too: the last ones before an end between
+  /// two rows are shortened to meet it.
+  bool is_shared_with_longer_runs() const { return next_row() <= end_ || state_.time == last_row(); }
 
   bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
 
@@ -140,7 +186,7 @@ class MpmRun {
     double step = scene_.mpm.time_step ? *scene_.mpm.time_step : scene_.mpm.cfl * cell_crossing_time();
     if (!scene_.mpm.time_step && settings_.explicit_fluid)
       step = std::min(step, scenes::step_limits(scene_).viscous);
-    const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
+    const double target = std::min(end_, next_row());
     const double left = target - state_.time;
     if (step >= left * (1.0 - 1e-12)) return left;
     return step > 0.5 * left ? 0.5 * left : step;
@@ -168,7 +214,7 @@ class MpmRun {
     state_.work += factor_ * result.wall_work;
     if (!scene_.forces.body_force.empty())
       state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
-    const double target = std::min(scene_.time.end, state_.histories * scene_.output.history_interval);
+    const double target = std::min(end_, next_row());
     state_.time = step >= target - state_.time ? target : state_.time + step;
     if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
     const double sound = scene_.material.longitudinal_speed();
@@ -185,11 +231,15 @@ class MpmRun {
   }
 
   void gauge() {
+    measure();
+    check_bounds();
+  }
+
+  void measure() {
     measures_ = gauges_.measure(*solver_);
     Energies& e = measures_.energies;
     e.dissipated = state_.dissipated;
     if (state_.steps > 0.0) e.numerical = state_.initial_energy + state_.work - total_energy() - e.dissipated;
-    check_bounds();
   }
 
   void check_bounds() const {
@@ -213,22 +263,31 @@ class MpmRun {
   void output() {
     writer_.history(gauges_.row(state_.time, state_.step, measures_));
     while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
-    if (due(state_.profiles, scene_.output.profile_interval) || state_.time >= scene_.time.end) {
+    if (due(state_.profiles, scene_.output.profile_interval)) {
       writer_.profile(state_.time, measures_.coordinate, measures_.value);
+      state_.last_profile = state_.time;
       while (due(state_.profiles, scene_.output.profile_interval)) state_.profiles += 1.0;
     }
     if (due(state_.snapshots, scene_.output.snapshot_interval)) {
       snapshots_.write(state_.time, *solver_);
+      state_.last_snapshot = state_.time;
       while (due(state_.snapshots, scene_.output.snapshot_interval)) state_.snapshots += 1.0;
     }
     follow_rest();
-    if (due(state_.checkpoints, scene_.output.checkpoint_interval)) {
-      while (due(state_.checkpoints, scene_.output.checkpoint_interval)) state_.checkpoints += 1.0;
-      if (state_.time > 0.0) checkpoint();
-    }
+    noise_.begin();
+    keep_checkpoint();
     std::string progress = fmt::format("t = {:.2f} s, {}", state_.time, gauges_.headline(measures_));
     if (can_rest()) progress += fmt::format(", growth to come {:.2g} %", 100.0 * growth_to_come());
     progress_.update(state_.time, progress);
+  }
+
+  /// At its interval, and where the run ends, so that it can be prolonged: in its last row that a longer run
+  /// has, too.
+  void keep_checkpoint() {
+    const bool is_due = due(state_.checkpoints, scene_.output.checkpoint_interval) && state_.time > 0.0;
+    while (due(state_.checkpoints, scene_.output.checkpoint_interval)) state_.checkpoints += 1.0;
+    if (!is_shared_with_longer_runs()) return;
+    if (is_due || next_row() > end_ || at_rest()) checkpoint();
   }
 
   /// A fluid is never at rest, and nothing bounds the growth of what has no yield stress.
@@ -273,7 +332,21 @@ class MpmRun {
   void checkpoint() {
     state_.cpu = runs::cpu_seconds() - cpu_begin_;
     state_.wall = seconds_now() - wall_begin_;
-    write_checkpoint(options_.directory, {state_, solver_->state(), scenes::resolved_toml(scene_)});
+    state_.stages = stage_times();
+    write_checkpoint(options_.directory,
+                     {state_, solver_->state(), scenes::resolved_toml(scene_), noise_.state()});
+  }
+
+  /// Of the whole run.
+  StageTimes stage_times() const {
+    const StageTimes& now = solver_->stage_times();
+    StageTimes t = stages_before_;
+    t.particles_to_grid += now.particles_to_grid;
+    t.nodes += now.nodes;
+    t.grid_to_particles += now.grid_to_particles;
+    t.sorting += now.sorting;
+    t.volumes += now.volumes;
+    return t;
   }
 
   void describe() {
@@ -284,7 +357,6 @@ class MpmRun {
     info["threads"] = solver_->threads();
     info["cell_m"] = settings_.cell;
     info["particles"] = solver_->particle_count();
-    info["occupied_cells_at_start"] = solver_->occupied_cells();
     writer_.write();
   }
 
@@ -293,13 +365,14 @@ class MpmRun {
     const double cpu = runs::cpu_seconds() - cpu_begin_, wall = seconds_now() - wall_begin_;
     const double particle_steps = state_.steps * static_cast<double>(solver_->particle_count());
     info["simulated_s"] = state_.time;
+    info["gauge"] = gauges_.headline_value(measures_);
     info["steps"] = static_cast<std::int64_t>(state_.steps);
     info["wall_s"] = wall;
     info["cpu_s"] = cpu;
     info["particle_steps_per_cpu_s"] = cpu > 0.0 ? particle_steps / cpu : 0.0;
     info["bytes_per_particle"] =
         static_cast<double>(solver_->bytes()) / static_cast<double>(solver_->particle_count());
-    const StageTimes& t = solver_->stage_times();
+    const StageTimes t = stage_times();
     info["stage_wall_s"] = {{"particles_to_grid", t.particles_to_grid},
                             {"nodes", t.nodes},
                             {"grid_to_particles", t.grid_to_particles},
@@ -363,21 +436,22 @@ class MpmRun {
   }
 
   RunResult stop(runs::Status status, const std::string& reason) {
-    if (status == runs::Status::interrupted) checkpoint();
-    if (status == runs::Status::at_rest) {
+    if (status == runs::Status::interrupted) {
+      if (is_shared_with_longer_runs()) checkpoint();
+    } else if (state_.last_profile != state_.time) {
       writer_.profile(state_.time, measures_.coordinate, measures_.value);
-      snapshots_.write(state_.time, *solver_);
     }
+    if (status == runs::Status::at_rest && state_.last_snapshot != state_.time)
+      snapshots_.write(state_.time, *solver_);
     summarise();
     writer_.finish(status, reason, verdict());
     print_summary(status);
     return {status, reason, state_.time, gauges_.headline_value(measures_)};
   }
 
-  void return_after_failure(const std::string& reason) {
+  void note_failure(const runs::Failure& failure) {
     summarise();
-    writer_.finish(runs::Status::failed, fmt::format("at {:.6g} s: {}", state_.time, reason),
-                   "noisy: the numerics failed");
+    writer_.fail({failure.fault, fmt::format("at {:.6g} s: {}", state_.time, failure.reason)});
     progress_.finish("failed");
   }
 
@@ -389,16 +463,17 @@ class MpmRun {
         runs::to_string(status), state_.time, gauges_.headline(measures_), steps / wall,
         info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
     if (options_.quiet) return;
-    const StageTimes& t = solver_->stage_times();
+    const StageTimes t = stage_times();
     const double listed = t.particles_to_grid + t.nodes + t.grid_to_particles + t.sorting + t.volumes;
-    fmt::print(stderr, "  wall time per stage ({} threads, {}, {:.2f} CPU s):\n", solver_->threads(),
-               solver_->instruction_set(), cpu);
+    std::string stages = fmt::format("  wall time per stage ({} threads, {}, {:.2f} CPU s):\n",
+                                     solver_->threads(), solver_->instruction_set(), cpu);
     for (const auto& [name, seconds] :
          {std::pair{"particles to grid", t.particles_to_grid}, std::pair{"nodes", t.nodes},
           std::pair{"grid to particles", t.grid_to_particles}, std::pair{"sorting", t.sorting},
           std::pair{"volumes", t.volumes}, std::pair{"gauges and output", std::max(0.0, wall - listed)}})
       if (seconds > 0.0)
-        fmt::print(stderr, "    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
+        stages += fmt::format("    {:<18} {:9.2f} s {:5.1f} %\n", name, seconds, 100.0 * seconds / wall);
+    runs::say(stderr, stages);
   }
 
   scenes::Scene scene_;
@@ -407,34 +482,111 @@ class MpmRun {
   Gauges gauges_;
   NoiseMeter noise_;
   double factor_;
+  double end_ = end_of(scene_);  ///< s
   double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
   std::unique_ptr<Solver> solver_;
   runs::RunWriter writer_;
   SnapshotWriter snapshots_;
   runs::Progress progress_;
   RunState state_;
+  StageTimes stages_before_;  ///< of earlier legs
   Measures measures_;
 };
+
+/// The instruction set to go on with.
+std::string instruction_set_of(const runs::EarlierRun& earlier, const std::string& wanted) {
+  const std::string before = earlier.info.value("instruction_set", "");
+  if (!wanted.empty() || before.empty()) return wanted;
+  const auto& known = instruction_sets();
+  if (std::find(known.begin(), known.end(), before) != known.end()) return before;
+  throw runs::RunError(
+      fmt::format("{}: this run was begun with the instruction set {}, which this machine lacks; allowed: "
+                  "--instruction-set "
+                  "with one of {}, with which it goes on otherwise rounded",
+                  earlier.directory.string(), before, fmt::join(known, ", ")));
+}
+
+/// @throws runs::RunError where the checkpoint is not one from which a run with these settings comes.
+void check_suits(const Checkpoint& checkpoint, const runs::EarlierRun& earlier, const scenes::Scene& scene) {
+  const std::filesystem::path file = earlier.directory / "checkpoint.h5";
+  for (const std::string& key : runs::differing_settings(scenes::parse_scene(checkpoint.scene, file), scene))
+    if (key != "time.end" && key != "time.stop_at_rest" && key != "mpm.threads" &&
+        key != "output.checkpoint_interval")
+      throw runs::RunError(
+          fmt::format("{}: it is of a run with another {} than run.json has", file.string(), key));
+  const Rows rows = rows_about(checkpoint.run, scene);
+  runs::check_end(earlier, scene, checkpoint.run.time == rows.last ? rows.last : rows.next);
+  if (settings_of(scene).explicit_fluid && !scene.mpm.time_step &&
+      scenes::step_limits(scene).viscous != scenes::step_limits(earlier.scene).viscous)
+    throw runs::RunError(
+        fmt::format("{}: with mpm.fluid_update = explicit and thixotropy every step hangs on time.end, so "
+                    "that the run cannot "
+                    "be prolonged; allowed: its own time.end, {:g} s",
+                    earlier.directory.string(), earlier.scene.time.end));
+}
+
+}  // namespace
+
+namespace {
+
+/// Memory may run out before the run begins, too.
+template <class Make>
+RunResult within_memory(const scenes::Scene& scene, Make make) {
+  try {
+    return make();
+  } catch (const std::bad_alloc&) {
+    runs::throw_again(runs::failure_at_hand(scenes::mpm_cost(scene).memory));
+  }
+}
+
+/// What a finished run came to.
+RunResult result_of(const runs::RunFolder& folder) {
+  const auto& info = folder.earlier();
+  const auto number = [&](const char* key) {
+    return info.contains(key) && info[key].is_number() ? info[key].get<double>() : runs::nothing;
+  };
+  return {*runs::status_from(info.value("status", "")), info.value("reason", ""), number("simulated_s"),
+          number("gauge")};
+}
+
+RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOptions& options) {
+  if (folder.is_finished()) {
+    if (!options.quiet) runs::say(stderr, folder.finished_words() + "\n");
+    return result_of(folder);
+  }
+  return within_memory(scene, [&] {
+    return MpmRun(scene, options, std::nullopt, [&] { return runs::RunWriter(std::move(folder)); }).run();
+  });
+}
 
 }  // namespace
 
 RunResult run(const scenes::Scene& scene, const RunOptions& options) {
-  return MpmRun(scene, options, std::nullopt).run();
+  const auto replace = options.force ? runs::Replace::anything : runs::Replace::failed;
+  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace), scene, options);
 }
 
-RunResult resume(const RunOptions& options) {
+RunResult resume(const RunOptions& options, const std::vector<std::string>& set) {
+  const runs::EarlierRun earlier = runs::read_earlier_run(options.directory, "mpm");
+  runs::FolderLock lock(options.directory);
+  const scenes::Scene scene =
+      runs::scene_to_go_on_with(earlier, set, {"mpm.threads", "output.checkpoint_interval"});
+  RunOptions leg = options;
+  leg.instruction_set = instruction_set_of(earlier, options.instruction_set);
   if (const auto checkpoint = read_checkpoint(options.directory)) {
-    const scenes::Scene scene = scenes::parse_scene(checkpoint->scene, options.directory / "checkpoint.h5");
-    return MpmRun(scene, options, checkpoint).run();
+    check_suits(*checkpoint, earlier, scene);
+    const RunState& state = checkpoint->run;
+    const auto open = [&] {
+      return runs::RunWriter::resume(std::move(lock), scene, {state.time, state.time, state.last_profile});
+    };
+    return within_memory(scene, [&] { return MpmRun(scene, leg, checkpoint, open).run(); });
   }
-  std::ifstream file(options.directory / "run.json");
-  const auto info = nlohmann::json::parse(file, nullptr, false);
-  if (info.is_discarded() || info.value("solver", "") != "mpm" || !info.contains("resolved_toml"))
-    throw runs::RunError(
-        fmt::format("{}: is not an MPM run that can be gone on with: neither a checkpoint.h5 nor a run.json "
-                    "of flowrest mpm",
-                    options.directory.string()));
-  return run(scenes::parse_scene(info["resolved_toml"], options.directory / "run.json"), options);
+  if (earlier.finished())
+    throw runs::RunError(fmt::format(
+        "{}: this run is finished and has no checkpoint.h5 from which it could be prolonged; run it anew, in "
+        "another folder",
+        options.directory.string()));
+  return run_in(runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished), scene, leg);
 }
 
 }  // namespace flowrest::mpm

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
@@ -11,8 +13,10 @@ namespace flowrest::mpm {
 struct RunOptions {
   std::filesystem::path directory;  ///< the run directory
   bool quiet = false;
-  bool resume = false;          ///< go on from the directory's checkpoint
-  std::string instruction_set;  ///< empty: the best this machine runs
+  bool force = false;           ///< replace whatever run stands in the directory
+  /// Empty: the best this machine runs; where a run is gone on with, the one it had, as others round
+  /// otherwise.
+  std::string instruction_set;
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };
 };
@@ -24,12 +28,19 @@ struct RunResult {
   double headline = 0.0;  ///< the scene's main gauge at the end (spread in mm, plug velocity in m/s)
 };
 
-/// Runs a scene to its end (rest, end time, interruption) and leaves the run directory.
-/// @throws runs::NumericsError where the numerics fail; the run directory then says so, with all data so far.
-/// @throws runs::RunError where the directory cannot be written.
+/// Runs a scene to its end (rest, end time, interruption) and leaves the run directory. A finished run of the
+/// same settings and version is taken as it is.
+/// @throws runs::NumericsError where the numerics fail and runs::MachineError where the machine does, as
+/// where disk or memory are full; the run directory then says so, with all data so far.
+/// @throws runs::RunError where the directory may not be written: see runs::RunFolder.
 RunResult run(const scenes::Scene&, const RunOptions&);
 
-/// Goes on with the run in `options.directory`, from its checkpoint or, before the first one, from the start.
-RunResult resume(const RunOptions&);
+/// Goes on with the run in `options.directory` under its settings with `set` laid over them, bit for bit as
+/// if it had had them from the start: from its checkpoint or, where it was stopped before the first one, from
+/// the start. `set` may give a later time.end, which prolongs a finished run, time.stop_at_rest=false,
+/// mpm.threads and output.checkpoint_interval.
+/// @throws runs::RunError where there is no such run, it is finished and not prolonged, or a setting may not
+/// change; nothing is written then.
+RunResult resume(const RunOptions&, const std::vector<std::string>& set = {});
 
 }  // namespace flowrest::mpm

@@ -1,6 +1,7 @@
 #include "mpm/output/run.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "mpm/output/checkpoint.h"
@@ -30,6 +31,32 @@ std::function<bool()> cut_after(int steps) {
   };
 }
 
+/// What a run says of itself, key by key, but for what it cost, who made it and where it was gone on with.
+void expect_same_words(nlohmann::ordered_json one, nlohmann::ordered_json other) {
+  EXPECT_FALSE(one.contains("resumed_at_s") && other.contains("resumed_at_s"));
+  for (auto* info : {&one, &other})
+    for (const char* key : {"resumed_at_s", "provenance", "wall_s", "cpu_s", "particle_steps_per_cpu_s",
+                            "bytes_per_particle", "stage_wall_s", "peak_memory_bytes"})
+      info->erase(key);
+  for (const auto& [key, value] : one.items()) {
+    ASSERT_TRUE(other.contains(key)) << key;
+    EXPECT_EQ(value, other[key]) << key;
+  }
+  for (const auto& [key, value] : other.items()) EXPECT_TRUE(one.contains(key)) << key;
+}
+
+void expect_same_snapshots(const fs::path& one, const fs::path& other) {
+  std::size_t ours = 0, theirs = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(one)) ++ours;
+  for (const auto& entry : fs::directory_iterator(other)) {
+    ++theirs;
+    const fs::path same = one / entry.path().filename();
+    ASSERT_TRUE(fs::exists(same)) << same;
+    EXPECT_EQ(fs::file_size(same), fs::file_size(entry.path())) << same;
+  }
+  EXPECT_EQ(ours, theirs);
+}
+
 void expect_same_run(const fs::path& one, const fs::path& other) {
   for (const char* file : {"history.csv", "profiles.csv", "particles/particles.hdf.series"}) {
     EXPECT_FALSE(text_of(one / file).empty()) << file;
@@ -43,7 +70,14 @@ void expect_same_run(const fs::path& one, const fs::path& other) {
   EXPECT_EQ(a->run.calm_since, b->run.calm_since);
   EXPECT_EQ(a->solver.cells, b->solver.cells);
   EXPECT_EQ(a->solver.arrays, b->solver.arrays);
+  EXPECT_EQ(a->run.histories, b->run.histories);
+  EXPECT_EQ(a->run.last_profile, b->run.last_profile);
+  EXPECT_EQ(a->run.last_snapshot, b->run.last_snapshot);
+  EXPECT_EQ(a->noise_meter, b->noise_meter);
+  EXPECT_EQ(a->run.noise.judged_until, b->run.noise.judged_until);
   EXPECT_EQ(a->scene, b->scene);
+  expect_same_words(runs::read_run(one).info, runs::read_run(other).info);
+  expect_same_snapshots(one / "particles", other / "particles");
 }
 
 }  // namespace
@@ -281,16 +315,184 @@ TEST_F(MpmRun, InterruptedWhileItSettlesItRestsAtTheSameTime) {
   const auto rested = runs::read_run(folder / "stopped");
   EXPECT_EQ(rested.info["rest_time_s"].get<double>(), whole.info["rest_time_s"].get<double>());
   EXPECT_EQ(rested.info["steps"].get<int>(), whole.info["steps"].get<int>());
-  EXPECT_EQ(text_of(folder / "whole" / "history.csv"), text_of(folder / "stopped" / "history.csv"));
+  expect_same_run(folder / "whole", folder / "stopped");
 }
 
-TEST_F(MpmRun, AFinishedRunResumedStaysAsItIs) {
-  run(tiny_slump(), options("run"));
-  const std::string history = text_of(folder / "run" / "history.csv"),
-                    profiles = text_of(folder / "run" / "profiles.csv");
-  EXPECT_EQ(resume(options("run")).status, runs::Status::end_time);
-  EXPECT_EQ(text_of(folder / "run" / "history.csv"), history);
-  EXPECT_EQ(text_of(folder / "run" / "profiles.csv"), profiles);
+/// What the folder of a run holds, by name.
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files[entry.path().string()] = text_of(entry.path());
+  return files;
+}
+
+std::string refusal_to_resume(const RunOptions& options, const std::vector<std::string>& set = {}) {
+  try {
+    resume(options, set);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_F(MpmRun, AFinishedRunIsNotGoneOnWithAndStaysAsItIs) {
+  for (const bool has_checkpoint : {true, false}) {
+    run(tiny_slump(), options("run"));
+    if (!has_checkpoint) fs::remove(folder / "run" / "checkpoint.h5");
+    const auto files = files_of(folder / "run");
+    EXPECT_THAT(refusal_to_resume(options("run")), HasSubstr("is finished"));
+    EXPECT_THAT(refusal_to_resume(options("run"), {"time.end=0.2"}), HasSubstr("time.end=... above 0.3 s"));
+    EXPECT_THAT(refusal_to_resume(options("run"), {"time.end=1", "mpm.cell=0.01"}), HasSubstr("mpm.cell"));
+    if (!has_checkpoint) {
+      EXPECT_THAT(refusal_to_resume(options("run"), {"time.end=1"}), HasSubstr("no checkpoint.h5"));
+    }
+    EXPECT_EQ(files_of(folder / "run"), files);
+  }
+}
+
+TEST_F(MpmRun, AResumedRunKeepsTheNameOfItsScene) {
+  auto stopped = options("run");
+  stopped.interrupted = stop_after(20);
+  run(tiny_slump(), stopped);
+  resume(options("run"));
+  const auto info = runs::read_run(folder / "run").info;
+  EXPECT_EQ(info["scene_name"], "roussel-slump");
+  EXPECT_EQ(info["scene"], tiny_slump().source);
+  EXPECT_EQ(info["title"], tiny_slump().title);
+}
+
+/// Runs to one end and prolongs it to another, beside one that was that long from the start.
+class ProlongedRun : public RunTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ProlongedRun, IsTheRunThatWasThatLongFromTheStart) {
+  run(tiny_slump(), options("whole"));
+  ASSERT_EQ(run(tiny_slump({std::string("time.end=") + GetParam()}), options("run")).status,
+            runs::Status::end_time);
+  EXPECT_EQ(resume(options("run"), {"time.end=0.3"}).status, runs::Status::end_time);
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+// On a row and a profile, on a row alone, between rows, within the first row, in the last steps before a row.
+INSTANTIATE_TEST_SUITE_P(FromAnyEnd, ProlongedRun, testing::Values("0.2", "0.15", "0.17", "0.01", "0.1999"));
+
+TEST_F(MpmRun, ProlongedByRowsWhoseTimesRoundItIsTheLongerRun) {
+  // 3 * 0.1 is more than 0.3, and 7 * 0.1 than 0.7.
+  const std::vector<std::string> rows = {"output.history_interval=0.1", "output.profile_interval=0.1"};
+  run(tiny_slump(with(rows, {"time.end=0.7"})), options("whole"));
+  run(tiny_slump(with(rows, {"time.end=0.3"})), options("run"));
+  resume(options("run"), {"time.end=0.7"});
+  expect_same_run(folder / "whole", folder / "run");
+  EXPECT_EQ(runs::read_run(folder / "run").history.rows(), 8u);
+}
+
+TEST_F(MpmRun, ProlongedTwiceAndInterruptedOnTheWayItIsTheLongerRun) {
+  run(tiny_slump(), options("whole"));
+  run(tiny_slump({"time.end=0.07"}), options("run"));
+  resume(options("run"), {"time.end=0.13"});
+  auto stopped = options("run");
+  stopped.interrupted = stop_after(20);
+  EXPECT_EQ(resume(stopped, {"time.end=0.22"}).status, runs::Status::interrupted);
+  EXPECT_EQ(runs::read_run(folder / "run").info["settings"]["time"]["end"], 0.22);
+  stopped.interrupted = cut_after(30);
+  EXPECT_THROW(resume(stopped, {"time.end=0.3"}), PowerCut);
+  // It was prolonged, whatever cut it off: the end is no more to be said.
+  resume(options("run"));
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+TEST_F(MpmRun, InterruptedInTheLastStepsBeforeItsEndItIsProlongedAllTheSame) {
+  run(tiny_slump(), options("whole"));
+  run(tiny_slump({"time.end=0.17"}), options("short"));
+  auto stopped = options("run");
+  stopped.interrupted = stop_after(runs::read_run(folder / "short").info["steps"].get<int>() - 1);
+  ASSERT_EQ(run(tiny_slump({"time.end=0.17"}), stopped).status, runs::Status::interrupted);
+  resume(options("run"), {"time.end=0.3"});
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+TEST_F(MpmRun, AnInterruptedRunCanBeMadeShorterButNotThanItIs) {
+  run(tiny_slump({"time.end=0.22"}), options("whole"));
+  auto stopped = options("run");
+  stopped.interrupted = stop_after(100);
+  run(tiny_slump(), stopped);
+  EXPECT_THAT(refusal_to_resume(options("run"), {"time.end=0.1"}),
+              HasSubstr("has come further; allowed: from 0.2"));
+  EXPECT_EQ(resume(options("run"), {"time.end=0.22"}).status, runs::Status::end_time);
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+TEST_F(MpmRun, ThreadsAndCheckpointsMayChangeWhileItGoesOn) {
+  run(tiny_slump({"mpm.threads=2", "output.checkpoint_interval=0.2"}), options("whole"));
+  auto stopped = options("run");
+  stopped.interrupted = stop_after(70);
+  run(tiny_slump(), stopped);
+  resume(options("run"), {"mpm.threads=2", "output.checkpoint_interval=0.2"});
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+TEST_F(MpmRun, ARestedRunIsProlongedPastItsRest) {
+  const std::vector<std::string> rests = {"time.end=20", "time.rest_bound=0.1",
+                                          "output.profile_interval=0.25"};
+  ASSERT_EQ(run(tiny_slump(rests), options("run")).status, runs::Status::at_rest);
+  const double rest = runs::read_run(folder / "run").info["simulated_s"];
+  const auto end = "time.end=" + std::to_string(rest + 0.23);
+  // A longer end alone changes nothing but what it says of it.
+  run(tiny_slump(with(rests, {"time.end=30"})), options("longer"));
+  EXPECT_EQ(resume(options("run"), {"time.end=30"}).status, runs::Status::at_rest);
+  expect_same_run(folder / "longer", folder / "run");
+
+  run(tiny_slump(with(rests, {end, "time.stop_at_rest=false"})), options("whole"));
+  EXPECT_EQ(resume(options("run"), {end, "time.stop_at_rest=false"}).status, runs::Status::end_time);
+  expect_same_run(folder / "whole", folder / "run");
+}
+
+TEST_F(MpmRun, AnInterruptionInTheMidstOfANoiseMeasurementLeavesNoTrace) {
+  // Its first three steps are looked at, and those after a row 200 steps later.
+  const auto scene = tiny_slump({"time.end=0.05"});
+  run(scene, options("whole"));
+  for (const int step : {1, 2, 3}) {
+    const std::string name = std::to_string(step);
+    auto stopped = options(name);
+    stopped.interrupted = stop_after(step);
+    run(scene, stopped);
+    resume(options(name));
+    expect_same_run(folder / "whole", folder / name);
+  }
+}
+
+TEST_F(MpmRun, EveryTimeIsInEveryTableOnceWhateverEndsTheRun) {
+  const std::vector<std::string> rests = {"time.end=20", "time.rest_bound=0.1"};
+  run(tiny_slump(), options("end"));
+  run(tiny_slump(with(rests, {"output.profile_interval=0.05", "output.snapshot_interval=0.05"})),
+      options("rest"));
+  auto stopped = options("stopped");
+  stopped.interrupted = stop_after(100);
+  run(tiny_slump(), stopped);
+  EXPECT_EQ(runs::read_run(folder / "rest").status(), runs::Status::at_rest);
+  for (const char* name : {"end", "rest", "stopped"}) {
+    const auto run = runs::read_run(folder / name);
+    const auto& time = run.history.at("time_s");
+    for (std::size_t i = 1; i < time.size(); ++i) EXPECT_GT(time[i], time[i - 1]) << name;
+    std::size_t points = run.profiles.front().value.size();
+    for (const auto& profile : run.profiles) {
+      EXPECT_LT(profile.value.size(), 2 * points) << name << " at " << profile.time << " s";
+      points = profile.value.size();
+    }
+    const auto series = nlohmann::json::parse(text_of(folder / name / "particles" / "particles.hdf.series"));
+    double last = -1.0;
+    for (const auto& entry : series["files"]) {
+      EXPECT_GT(entry["time"].get<double>(), last) << name;
+      last = entry["time"];
+    }
+  }
+}
+
+TEST_F(MpmRun, ARunOfAnotherInstructionSetGoesOnWithIt) {
+  auto stopped = options("run");
+  stopped.instruction_set = "generic";
+  run(tiny_slump(), stopped);
+  resume(options("run"), {"time.end=0.35"});
+  EXPECT_EQ(runs::read_run(folder / "run").info["instruction_set"], "generic");
 }
 
 TEST_F(MpmRun, WhatWasKilledBeforeItsFirstCheckpointIsGoneOnWith) {
@@ -308,14 +510,7 @@ TEST_F(MpmRun, ADamagedCheckpointIsAnErrorThatNamesIt) {
   run(tiny_slump(), options("run"));
   const fs::path file = folder / "run" / "checkpoint.h5";
   const std::string whole = text_of(file);
-  const auto refusal = [&]() -> std::string {
-    try {
-      resume(options("run"));
-    } catch (const runs::RunError& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
-  };
+  const auto refusal = [&] { return refusal_to_resume(options("run"), {"time.end=1"}); };
   for (const std::size_t kept : {std::size_t{0}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, kept);
     EXPECT_THAT(refusal(), HasSubstr("checkpoint.h5"))
@@ -333,6 +528,8 @@ TEST_F(MpmRun, ACheckpointReadsBackAsItWasWritten) {
   written.run.steps = 12345.0;
   written.run.calm_since = -1.0;
   written.run.checkpoints = 7.0;
+  written.run.stages.nodes = 0.25;
+  written.noise_meter = {2.0, 0.1, 0.2, 0.3};
   written.scene = "title = \"ä\"\n";
   written.solver.cells = {{1, -2, 3}, {-400000, 5, 6}};
   written.solver.arrays = {{0.1, 1e-300}, {-0.0, 1e300}};
@@ -344,6 +541,8 @@ TEST_F(MpmRun, ACheckpointReadsBackAsItWasWritten) {
   EXPECT_EQ(read->run.steps, written.run.steps);
   EXPECT_EQ(read->run.calm_since, written.run.calm_since);
   EXPECT_EQ(read->run.checkpoints, written.run.checkpoints);
+  EXPECT_EQ(read->run.stages.nodes, 0.25);
+  EXPECT_EQ(read->noise_meter, written.noise_meter);
   EXPECT_EQ(read->scene, written.scene);
   EXPECT_EQ(read->solver.cells, written.solver.cells);
   EXPECT_EQ(read->solver.arrays, written.solver.arrays);

@@ -9,6 +9,7 @@
 #include "mpm/output/averaged_pressure.h"
 #include "mpm/output/hdf5_file.h"
 #include "mpm/solver/settings.h"
+#include "runs/folder.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::mpm {
@@ -29,16 +30,28 @@ SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const sce
       cell_(cell_size(scene)),
       duct_(scene.kind == scenes::Kind::duct),
       dimension_(scene.spatial_dimension()) {
-  std::filesystem::create_directories(directory_);
   std::ifstream file(directory_ / "particles.hdf.series");
   const auto series = nlohmann::json::parse(file, nullptr, false);
   if (series.is_discarded() || !series.contains("files")) return;
-  for (const auto& entry : series["files"])
-    if (entry.value("time", 0.0) <= resume_time)
-      series_.emplace_back(entry.value("name", ""), entry.value("time", 0.0));
+  bool dropped = false;
+  for (const auto& entry : series["files"]) {
+    const std::string name = entry.value("name", "");
+    const double time = entry.value("time", 0.0);
+    if (time <= resume_time) {
+      series_.emplace_back(name, time);
+    } else {
+      dropped = true;
+    }
+  }
+  if (!dropped) return;
+  write_series();
+  for (std::size_t number = series_.size(); std::filesystem::remove(directory_ / name_of(number));) ++number;
 }
 
+std::string SnapshotWriter::name_of(std::size_t number) { return fmt::format("particles_{:06}.hdf", number); }
+
 void SnapshotWriter::write(double time, Solver& solver) {
+  if (!series_.empty() && series_.back().second == time) return;
   std::vector<float> points, velocity, rate, stress, pressure, raw_pressure, volume, flocculation;
   AveragedPressure averaged(dimension_, cell_);
   solver.visit([&](const ParticleBatch& batch) { averaged.add(batch); });
@@ -63,7 +76,8 @@ void SnapshotWriter::write(double time, Solver& solver) {
   std::iota(offsets.begin(), offsets.end(), 0);
   const std::vector<std::uint8_t> types(rate.size(), vtk_vertex);
 
-  const std::string name = fmt::format("particles_{:06}.hdf", series_.size());
+  runs::make_folder(directory_);
+  const std::string name = name_of(series_.size());
   Hdf5File file = Hdf5File::create(directory_ / name);
   file.group("/VTKHDF");
   file.attribute("/VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});

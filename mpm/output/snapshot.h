@@ -13,11 +13,13 @@ namespace flowrest::mpm {
 /// volume (m3) and, where thixotropic, flocculation. Axisymmetric and plane sections lie in x-z.
 class SnapshotWriter {
  public:
-  /// `directory` is made if it is missing; snapshots after `resume_time` are dropped from the series.
+  /// `directory` is made if it is missing; snapshots after `resume_time` are removed.
   SnapshotWriter(const std::filesystem::path& directory, const scenes::Scene&, double resume_time);
+  /// Each time once: a second snapshot of the same time is left out.
   void write(double time, Solver&);
 
  private:
+  static std::string name_of(std::size_t number);
   void write_series() const;
 
   std::filesystem::path directory_;

@@ -48,9 +48,11 @@ class RunTest : public testing::Test {
     o.quiet = true;
     return o;
   }
-  /// Runs a scene and reads what it left.
+  /// Runs a scene, whatever ran in the folder before, and reads what it left.
   runs::Run run_and_read(const scenes::Scene& scene, const std::string& name = "run") const {
-    run(scene, options(name));
+    RunOptions anew = options(name);
+    anew.force = true;
+    run(scene, anew);
     return runs::read_run(folder / name);
   }
 

@@ -146,7 +146,8 @@ std::vector<MeshElement> mesh_by_gmsh(const MeshedBody& body, double size) {
                          "-nt", "1", "-v", "2"},
                         folder.path(), folder / "log", {});
   std::optional<runs::ProcessEnd> end;
-  while (!end) end = process.wait(60.0);
+  while (!(end = process.wait(0.1)))
+    if (runs::InterruptGuard::count() > 0) throw runs::Interrupted("interrupted before the run began");
   if (!end->good())
     throw runs::RunError(
         fmt::format("gmsh failed ({}) on the body: {}", end->how(), runs::last_words(folder / "log")));

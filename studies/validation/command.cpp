@@ -77,7 +77,7 @@ void run(Arguments& arguments) {
   const auto wanted = plan(options);
   const Folder folder{fs::absolute(options.folder)};
   if (arguments.list) return print_list(wanted, folder);
-  const FolderLock lock(folder.root);
+  const runs::FolderLock lock(folder.root);
   constexpr double day = 86400.0;
   Study study;
   study.name = "validation";
@@ -128,15 +128,25 @@ void add_command(CLI::App& app) {
   command->add_option("--coarsening", options.coarsening, "Cells of the second resolution over the scene's")
       ->check(CLI::Range(1.2, 4.0))
       ->capture_default_str();
-  command->add_option("-j,--jobs", arguments->workflow.cores, "Cores to use (all)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--profile", arguments->workflow.profile,
-                      "A Snakemake profile: where the runs are made, such as studies/workflow/slurm");
+  auto* jobs = command->add_option("-j,--jobs", arguments->workflow.cores, "Cores to use (all)")
+                   ->check(CLI::PositiveNumber);
+  auto* profile =
+      command
+          ->add_option("--profile", arguments->workflow.profile,
+                       "A Snakemake profile: where the runs are made, such as studies/workflow/slurm")
+          ->excludes(jobs);
   command->add_flag("--any-version", options.any_version,
                     "Take whole runs of the same settings by other versions of flowrest too");
-  command->add_flag("--list", arguments->list, "Say what would be run and for how long; run nothing");
-  command->add_flag("--report-only", arguments->report_only, "Make no run; report on those there are");
-  command->add_flag("--json", arguments->json, "End with a machine-readable line");
+  auto* report_only =
+      command->add_flag("--report-only", arguments->report_only, "Make no run; report on those there are")
+          ->excludes(jobs)
+          ->excludes(profile);
+  auto* json = command->add_flag("--json", arguments->json, "End with a machine-readable line");
+  command->add_flag("--list", arguments->list, "Say what would be run and for how long; run nothing")
+      ->excludes(jobs)
+      ->excludes(profile)
+      ->excludes(report_only)
+      ->excludes(json);
   command->add_flag("--quiet", arguments->workflow.quiet, "Print no progress");
   command->callback([arguments] { run(*arguments); });
 }

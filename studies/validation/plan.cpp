@@ -12,11 +12,7 @@ namespace {
 
 /// What a run's folder is named after besides its settings, so that a run of another version never stands for
 /// this one's.
-std::string version() {
-  const auto made_by = runs::provenance();
-  return made_by.value("flowrest", "") + made_by.value("git_hash", "") +
-         (made_by.value("git_dirty", false) ? "-modified" : "");
-}
+std::string version() { return runs::version_in(runs::provenance()); }
 
 /// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them
 /// across.
@@ -40,7 +36,8 @@ Wanted wanted_run(const std::string& name, const scenes::Scene& scene, Solver so
   if (coarse) {
     overrides.set.push_back(fmt::format("{}.cell={:.17g}", to_string(solver), wanted.cell));
     // Its history is read, its states are not.
-    overrides.set.push_back(fmt::format("output.snapshot_interval={:.17g}", scene.time.end));
+    if (!scenes::gives_key(options.set, "output.snapshot_interval"))
+      overrides.set.push_back(fmt::format("output.snapshot_interval={:.17g}", scene.time.end));
   }
   Point& point = wanted.point;
   point.solver = solver;
@@ -78,9 +75,9 @@ std::vector<SceneWanted> plan(const Options& options) {
       if (std::find(names.begin(), names.end(), item.scene) == names.end()) names.push_back(item.scene);
   std::vector<SceneWanted> all;
   for (const std::string& name : names) {
-    scenes::Overrides overrides;
-    overrides.set = options.set;
-    SceneWanted wanted{name, scenes::load_scene(name, overrides), {}, {}, ""};
+    SceneWanted wanted{
+        name, scenes::load_scene(name, scenes::overrides_of_command_line(options.set)), {}, {}, ""};
+    scenes::check_model_has_effect(wanted.scene, options.set);
     for (const Published& p : published)
       if (p.scene == wanted.scene.name) wanted.published.push_back(p);
     if (wanted.published.empty()) wanted.published = exact_numbers(wanted.scene.name, wanted.scene);

@@ -1,7 +1,6 @@
 #include "studies/verification/scene_runs.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include "runs/process.h"
 
@@ -22,10 +21,7 @@ runs::Run run_scene(const std::string& scene, const std::vector<std::string>& se
   runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
   bool asked = false;
   while (!process.wait(0.2))
-    if (place.interrupted() && !asked) {
-      process.signal(SIGINT);
-      asked = true;
-    }
+    if (place.interrupted()) asked = process.hand_on_interrupts();
   if (asked) throw runs::NumericsError("interrupted");
   const runs::ProcessEnd end = *process.poll();
   if (!end.good()) throw runs::NumericsError(fmt::format("{}: {}", end.how(), runs::last_words(log)));
