@@ -8,15 +8,18 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 
 #include "runs/console.h"
+#include "runs/cores.h"
 #include "runs/folder.h"
 #include "runs/folder_lock.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "runs/run_folder.h"
+#include "scenes/plausibility.h"
 #include "scenes/scene.h"
 #ifdef FLOWREST_HAS_COMPARE
 #include "compare/words.h"
@@ -44,11 +47,29 @@ struct Job {
   std::vector<std::string> arguments;
 };
 
+/// Passes on what the programs of a scene say: notes to stderr as everywhere, each once though every run of
+/// the scene has it, all else to stdout.
+class Relay {
+ public:
+  void note(const std::vector<std::string>& notes) {
+    for (const std::string& text : notes) pass("Note: " + text);
+  }
+  void pass(const std::string& line) {
+    const bool is_note = line.starts_with("Note: ");
+    if (is_note && !noted_.insert(line).second) return;
+    fmt::print(is_note ? stderr : stdout, "{}\n", line);
+  }
+
+ private:
+  std::set<std::string> noted_;
+};
+
 /// A job under way: its process and how much of its log has been shown.
 class RunningJob {
  public:
-  RunningJob(Job job, const fs::path& program, const fs::path& logs)
-      : job_(std::move(job)),
+  RunningJob(Job job, const fs::path& program, const fs::path& logs, Relay& relay)
+      : relay_(relay),
+        job_(std::move(job)),
         log_(logs / (job_.directory.filename().string() + ".log")),
         process_(program, job_.arguments, fs::current_path(), log_, {}) {}
 
@@ -61,12 +82,13 @@ class RunningJob {
     std::ifstream file(log_);
     file.seekg(shown_);
     for (std::string line; std::getline(file, line) && !file.eof();) {
-      runs::say(stdout, line + "\n");
+      relay_.pass(line);
       shown_ = file.tellg();
     }
   }
 
  private:
+  Relay& relay_;
   Job job_;
   fs::path log_;
   std::streamoff shown_ = 0;
@@ -119,8 +141,8 @@ std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, co
 
 class Scheduler {
  public:
-  Scheduler(std::deque<Job> jobs, int at_once, fs::path logs)
-      : waiting_(std::move(jobs)), at_once_(at_once), logs_(std::move(logs)) {}
+  Scheduler(std::deque<Job> jobs, int at_once, fs::path logs, Relay& relay)
+      : waiting_(std::move(jobs)), at_once_(at_once), logs_(std::move(logs)), relay_(relay) {}
 
   /// Runs everything; returns the exit code to end with: that of the first job that failed, 130 where
   /// interrupted.
@@ -132,7 +154,7 @@ class Scheduler {
       while (!waiting_.empty() && static_cast<int>(running_.size()) < at_once_) {
         runs::say(stdout, fmt::format("{}: started, in {}\n", waiting_.front().name,
                                       waiting_.front().directory.string()));
-        running_.push_back(std::make_unique<RunningJob>(std::move(waiting_.front()), program, logs_));
+        running_.push_back(std::make_unique<RunningJob>(std::move(waiting_.front()), program, logs_, relay_));
         waiting_.pop_front();
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -165,13 +187,14 @@ class Scheduler {
   std::deque<Job> waiting_;
   int at_once_;
   fs::path logs_;
+  Relay& relay_;
   std::vector<std::unique_ptr<RunningJob>> running_;
   int code_ = 0;
 };
 
 #ifdef FLOWREST_HAS_COMPARE
 /// Runs another of this program's commands, its output going where ours goes; returns its exit code.
-int call(const std::vector<std::string>& arguments, const fs::path& log) {
+int call(const std::vector<std::string>& arguments, const fs::path& log, Relay& relay) {
   runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
   bool interrupted = false;
   while (!process.poll()) {
@@ -179,7 +202,7 @@ int call(const std::vector<std::string>& arguments, const fs::path& log) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   std::ifstream file(log);
-  for (std::string line; std::getline(file, line);) runs::say(stdout, line + "\n");
+  for (std::string line; std::getline(file, line);) relay.pass(line);
   if (interrupted) return 130;
   const auto end = process.poll();
   return end->signal ? 1 : end->exit_code;
@@ -188,21 +211,22 @@ int call(const std::vector<std::string>& arguments, const fs::path& log) {
 /// Exact solutions and the report over every run that left a directory; returns the first exit code that is
 /// not 0.
 int compare_runs(const scenes::Scene& scene, const std::string& named, const fs::path& folder,
-                 std::vector<fs::path> made, const RunCommandOptions& options) {
+                 std::vector<fs::path> made, const RunCommandOptions& options, Relay& relay) {
   int code = 0;
   if (scene.runs.exact) {
     std::vector<std::string> exact = {"exact", named, "-o", (folder / "exact").string()};
     if (options.force) exact.push_back("--force");
     add_settings(exact, options.set);
-    code = call(exact, folder / "logs" / "exact.log");
+    code = call(exact, folder / "logs" / "exact.log", relay);
     if (code == 130) return code;
     if (code == 0) made.push_back(folder / "exact");
   }
   std::vector<std::string> arguments = {"compare"};
   for (const auto& run : made)
     if (fs::exists(run)) arguments.push_back(run.string());
+  if (arguments.size() == 1) return code;
   arguments.insert(arguments.end(), {"-o", (folder / "report").string()});
-  const int compared = call(arguments, folder / "logs" / "compare.log");
+  const int compared = call(arguments, folder / "logs" / "compare.log", relay);
   return code == 0 ? compared : code;
 }
 #endif
@@ -221,10 +245,12 @@ Job accuracy_job(const std::string& named, const fs::path& directory, const RunC
 /// @return the exit code
 int check_accuracy(const fs::path& folder, const studies::Choice& choice, double wanted) {
   const runs::Run run = runs::read_run(folder / "mpm"), twin = runs::read_run(folder / "mpm-coarser-twin");
-  const std::string quantity = run.info.at("kind") == "slump" ? "spread_mm" : "mean_velocity_m_s";
+  const std::string& quantity = choice.quantity;
   const auto value = studies::measure(run, quantity), other = studies::measure(twin, quantity);
   if (!value || !other || *value == 0.0) {
-    fmt::print("The accuracy cannot be checked: a run did not come to its end.\n");
+    fmt::print(
+        "The accuracy cannot be checked: a run did not come to its end, or has no {} to be held against.\n",
+        quantity);
     return 3;
   }
   const double coarser = choice.twin_cell / choice.cell,
@@ -271,6 +297,8 @@ studies::Choice choice_for(const scenes::Scene& scene, const RunCommandOptions& 
 int run_accurately(const scenes::Scene& scene, const std::string& named, const RunCommandOptions& options) {
   const double wanted = studies::accuracy_from(options.accuracy);
   const studies::Choice choice = choice_for(scene, options);
+  Relay relay;
+  relay.note(scenes::plausibility_notes(scene));
   fmt::print(
       "Chosen for {}: {}.\nExpected error {}, expected cost {} of CPU with the coarser twin (cells of {:g} "
       "m) that "
@@ -283,8 +311,8 @@ int run_accurately(const scenes::Scene& scene, const std::string& named, const R
   runs::make_folder(folder / "logs");
   std::deque<Job> jobs = {accuracy_job(named, folder / "mpm", options, choice.set),
                           accuracy_job(named, folder / "mpm-coarser-twin", options, choice.twin_set)};
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int code = Scheduler(std::move(jobs), options.jobs > 0 ? options.jobs : cores, folder / "logs").run();
+  const int at_once = options.jobs > 0 ? options.jobs : runs::cores();
+  const int code = Scheduler(std::move(jobs), at_once, folder / "logs", relay).run();
   return code != 0 ? code : check_accuracy(folder, choice, wanted);
 }
 #endif
@@ -295,19 +323,16 @@ int run_scene(const scenes::Scene& scene, const std::string& named, const RunCom
   const runs::FolderLock lock(folder);
   runs::make_folder(logs);
   const runs::InterruptGuard guard;
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int at_once = options.jobs > 0 ? options.jobs : cores;
+  const int at_once = options.jobs > 0 ? options.jobs : runs::cores();
   auto jobs = jobs_of(scene, named, folder, options, at_once > 1);
+  Relay relay;
+  relay.note(scenes::plausibility_notes(scene));
   std::vector<fs::path> made;
   for (const auto& job : jobs) made.push_back(job.directory);
-  int code = Scheduler(std::move(jobs), at_once, logs).run();
+  int code = Scheduler(std::move(jobs), at_once, logs, relay).run();
 #ifdef FLOWREST_HAS_COMPARE
-  const bool comparable = scene.kind == scenes::Kind::slump || scene.kind == scenes::Kind::duct;
-  if (!comparable)
-    fmt::print("{}: runs of this kind ({}) are not compared in a report\n", scene.name,
-               scenes::to_string(scene.kind));
-  if (code != 130 && comparable) {
-    const int compared = compare_runs(scene, named, folder, made, options);
+  if (code != 130) {
+    const int compared = compare_runs(scene, named, folder, made, options, relay);
     if (code == 0) code = compared;
   }
 #endif

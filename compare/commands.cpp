@@ -10,7 +10,9 @@
 #include "compare/comparison.h"
 #include "compare/exact/exact_run.h"
 #include "runs/run_directory.h"
+#include "scenes/plausibility.h"
 #include "scenes/scene.h"
+#include "scenes/text.h"
 
 namespace flowrest::compare {
 
@@ -43,6 +45,7 @@ void add_exact(CLI::App& app) {
   command->callback([arguments] {
     const auto scene =
         scenes::load_scene(arguments->scene, scenes::overrides_of_command_line(arguments->set));
+    scenes::print_notes(scenes::plausibility_notes(scene));
     if (arguments->thin_film) exact::check_film(scene);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};
@@ -66,7 +69,7 @@ void try_figures(const Comparison& comparison, const std::string& report) {
   try {
     write_figures(comparison, report);
   } catch (const runs::MissingProgram& missing) {
-    fmt::print("Note: no figures for papers: {}\n", missing.what());
+    scenes::print_notes({fmt::format("no figures for papers: {}", missing.what())});
   }
 }
 
@@ -119,7 +122,7 @@ void add_compare(CLI::App& app) {
     if (!arguments->no_figures) try_figures(comparison, arguments->output);
     if (!arguments->clip.empty())
       write_clip(comparison, std::filesystem::path(arguments->output) / arguments->clip);
-    for (const std::string& note : comparison.notes) fmt::print("Note: {}\n", note);
+    scenes::print_notes(comparison.notes);
     for (const Finding& finding : comparison.findings) fmt::print("{}\n", finding.text);
     const std::string page =
         (std::filesystem::absolute(arguments->output) / "index.html").lexically_normal().string();

@@ -11,6 +11,8 @@
 #include "compare/run_view.h"
 #include "compare/square.h"
 #include "runs/gauges.h"
+#include "scenes/names.h"
+#include "scenes/text.h"
 
 namespace flowrest::compare {
 
@@ -69,14 +71,9 @@ scenes::Kind common_kind(const std::vector<runs::Run>& runs) {
     if (kind_of(run) != kind)
       throw RunError(fmt::format("{}: a {} cannot be compared with a {} ({})", run.directory.string(),
                                  kind_of(run), kind, runs.front().directory.string()));
-  std::string allowed;
-  for (const auto known : {scenes::Kind::slump, scenes::Kind::duct, scenes::Kind::l_box,
-                           scenes::Kind::v_funnel, scenes::Kind::dam_break}) {
-    if (kind == scenes::to_string(known)) return known;
-    allowed += (allowed.empty() ? "" : ", ") + scenes::to_string(known);
-  }
-  throw RunError(
-      fmt::format("{}: kind '{}' is unknown; allowed: {}", runs.front().directory.string(), kind, allowed));
+  if (const auto known = scenes::choice_named<scenes::Kind>(kind)) return *known;
+  throw RunError(fmt::format("{}: kind '{}' is unknown; allowed: {}", runs.front().directory.string(), kind,
+                             scenes::joined(scenes::all_names<scenes::Kind>())));
 }
 
 /// MPM before OpenFOAM before others, exact solutions last; within a solver the law that stops first; else as
@@ -84,11 +81,7 @@ scenes::Kind common_kind(const std::vector<runs::Run>& runs) {
 void sort_runs(std::vector<RunView>& views) {
   const auto rank = [](const RunView& v) {
     const int solver = v.exact ? 3 : v.solver == "mpm" ? 0 : v.solver == "foam" ? 1 : 2;
-    const int model = v.model == "elasto-viscoplastic" ? 0
-                      : v.model == "papanastasiou"     ? 1
-                      : v.model == "bi-viscous"        ? 2
-                                                       : 3;
-    return std::pair(solver, model);
+    return std::pair(solver, laws::order_of(v.model));
   };
   std::stable_sort(views.begin(), views.end(),
                    [&](const RunView& a, const RunView& b) { return rank(a) < rank(b); });
@@ -203,6 +196,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   measure_uncertainty(comparison);
   compare_pairs(comparison);
   fill_square(comparison);
+  note_scenes(comparison);
   note_missing(comparison);
   note_walls(comparison);
   describe(comparison);

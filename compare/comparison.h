@@ -96,8 +96,9 @@ struct RunView {
   std::string label;  ///< unique
   std::string solver, model;
   bool exact = false;
-  bool held = false;   ///< it came to rest: its last state stands for all later times
-  bool fluid = false;  ///< a law that never comes to rest
+  bool held = false;             ///< it came to rest: its last state stands for all later times
+  std::optional<laws::Law> law;  ///< that `model` names
+  bool fluid = false;            ///< a law that never comes to rest
   bool noisy = false;
   std::string noise;    ///< why
   std::string trouble;  ///< "interrupted at 12 s", "failed at 3 s: why"; empty where the run came to its end
@@ -144,7 +145,7 @@ struct Square {
     double noise = 0.0;        ///< root sum square of the runs' scatter and of how their edge is read
   };
   std::vector<At> at;
-  std::vector<std::string> missing;  ///< corners without a run, and how to make them
+  std::vector<std::string> missing;  ///< commands that make the corners without a run, where they are known
 };
 
 /// A sentence of what was found.

@@ -339,7 +339,9 @@ std::optional<Chapter> square_chapter(const Comparison& comparison) {
   if (square.at.empty()) {
     for (const std::string& command : square.missing)
       chapter.blocks.push_back(Text{
-          "The square of (MPM, OpenFOAM) and (fluid, elasto-viscoplastic) lacks a run. Make it: " + command,
+          fmt::format(
+              "The square of (MPM, OpenFOAM) and (fluid, elasto-viscoplastic) lacks a run. Make it: `{}`",
+              command),
           Text::Style::warning});
     return chapter.blocks.empty() ? std::nullopt : std::optional(chapter);
   }
@@ -704,12 +706,7 @@ void carry_on(report::Curve& curve, double rate, double end) {
 report::Entry entry_of(const std::string& name, const std::string& solver, const std::string& model) {
   report::Entry entry{name};
   const bool exact = solver == "exact";
-  entry.colour = exact                            ? -1
-                 : model == "elasto-viscoplastic" ? 0
-                 : model == "papanastasiou"       ? 1
-                 : model == "bi-viscous"          ? 2
-                 : model == "newtonian"           ? 3
-                                                  : 4;
+  entry.colour = exact ? -1 : laws::order_of(model);
   entry.dash = exact ? 5 : solver == "mpm" ? 0 : solver == "foam" ? 1 : 2;
   return entry;
 }

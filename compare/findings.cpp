@@ -111,8 +111,9 @@ std::vector<std::string> fluid_sentences(const Comparison& comparison) {
   for (const RunView& view : comparison.runs)
     if (view.fluid && !view.gauge.empty())
       by_end[rounding * std::round(*view.measures.end / rounding)].push_back(fluid_clause(comparison, view));
-  const bool newtonian = std::any_of(comparison.runs.begin(), comparison.runs.end(),
-                                     [](const RunView& view) { return view.model == "newtonian"; });
+  const bool newtonian = std::any_of(comparison.runs.begin(), comparison.runs.end(), [](const RunView& view) {
+    return view.fluid && !laws::creeps(*view.law);
+  });
   std::vector<std::string> sentences;
   for (const auto& [end, clauses] : by_end)
     sentences.push_back(fmt::format("The {}{} not come to rest by {}: {}.", newtonian ? "" : "regularised ",
@@ -221,8 +222,10 @@ std::string square_sentence(const Comparison& comparison) {
   const Square& square = *comparison.square;
   if (square.at.empty()) {
     if (square.missing.empty()) return "";
+    std::vector<std::string> commands;
+    for (const std::string& command : square.missing) commands.push_back(fmt::format("`{}`", command));
     return fmt::format("Law and discretisation cannot be told apart in full, for want of {}: {}.",
-                       square.missing.size() == 1 ? "a run" : "runs", listed(square.missing));
+                       commands.size() == 1 ? "a run" : "runs", listed(commands));
   }
   const Square::At& at = square.at.back();
   const Gauge& gauge = gauge_of(comparison.kind);

@@ -8,6 +8,7 @@
 
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
+#include "runs/command.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
 
@@ -144,7 +145,8 @@ RunView view_of(runs::Run run, scenes::Kind kind) {
   view.model = word(info, "/model");
   view.exact = view.solver == "exact";
   view.held = view.run.status() == runs::Status::at_rest;
-  view.fluid = view.model == "papanastasiou" || view.model == "bi-viscous" || view.model == "newtonian";
+  view.law = laws::law_named(view.model);
+  view.fluid = view.law && !laws::can_rest(*view.law);
   if (const std::string verdict = word(info, "/verdict"); verdict.starts_with("noisy")) {
     view.noisy = true;
     const auto colon = verdict.find(": ");
@@ -254,10 +256,23 @@ void note_gauges(Comparison& comparison) {
                                            gauge_of(comparison.kind).name, words::listed(unread)));
 }
 
-std::string command_for(const Comparison& comparison, const std::string& solver, const std::string& model) {
-  const std::string scene = word(comparison.runs.front().run.info, "/scene_name");
-  return fmt::format("flowrest {} {}{}", solver, scene.empty() ? "SCENE" : scene,
-                     model.empty() ? "" : " --model " + model);
+std::optional<std::string> command_for(const Comparison& comparison, const std::string& solver,
+                                       const std::string& model) {
+  const RunView* like = &comparison.runs.front();
+  for (const RunView& view : comparison.runs)
+    if (view.solver == solver && like->solver != solver) like = &view;
+  return runs::command_to_make(like->run.info, solver, model);
+}
+
+void note_scenes(Comparison& comparison) {
+  std::set<std::string> said;
+  for (const RunView& view : comparison.runs) {
+    const auto notes = view.run.info.find("notes");
+    if (notes == view.run.info.end() || !notes->is_array()) continue;
+    for (const Json& note : *notes)
+      if (note.is_string() && said.insert(note.get<std::string>()).second)
+        comparison.notes.push_back(fmt::format("In the scene {}.", note.get<std::string>()));
+  }
 }
 
 void note_missing(Comparison& comparison) {
@@ -272,9 +287,10 @@ void note_missing(Comparison& comparison) {
         return view.solver == solver && view.model == model.get<std::string>();
       });
       if (here) continue;
-      comparison.missing.push_back(fmt::format("{} {} (make it by `{}`)",
-                                               solver == "mpm" ? "MPM" : "OpenFOAM", model.get<std::string>(),
-                                               command_for(comparison, solver, model.get<std::string>())));
+      const auto command = command_for(comparison, solver, model.get<std::string>());
+      comparison.missing.push_back(fmt::format("{} {}{}", solver == "mpm" ? "MPM" : "OpenFOAM",
+                                               model.get<std::string>(),
+                                               command ? fmt::format(" (make it by `{}`)", *command) : ""));
     }
   }
 }

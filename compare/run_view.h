@@ -43,7 +43,13 @@ void note_missing(Comparison&);
 /// Notes the runs whose walls are not those of the scene.
 void note_walls(Comparison&);
 
-/// The command that makes a run of the scene: "flowrest foam roussel-slump --model bi-viscous".
-std::string command_for(const Comparison&, const std::string& solver, const std::string& model);
+/// Notes what the runs say of themselves to be implausible, once each.
+void note_scenes(Comparison&);
+
+/// The command that makes a run of the scene, with the settings of the first run of that solver, or else of
+/// the first run: "flowrest foam roussel-slump --model bi-viscous". Nothing where the runs do not say of
+/// which scene they are.
+std::optional<std::string> command_for(const Comparison&, const std::string& solver,
+                                       const std::string& model);
 
 }  // namespace flowrest::compare

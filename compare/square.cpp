@@ -31,7 +31,9 @@ std::optional<std::size_t> corner(const Comparison& comparison, const std::strin
 std::string common_fluid(const Comparison& comparison) {
   std::string best;
   int most = 0;
-  for (const char* model : {"papanastasiou", "bi-viscous"}) {
+  for (const laws::Law law : laws::every_law) {
+    if (!laws::creeps(law)) continue;
+    const std::string model = laws::name_of(law);
     const int filled =
         corner(comparison, "mpm", model).has_value() + corner(comparison, "foam", model).has_value();
     if (filled > most) {
@@ -79,16 +81,19 @@ void fill_square(Comparison& comparison) {
   Square square;
   square.fluid = common_fluid(comparison);
   if (square.fluid.empty()) return;
+  const std::string solid = laws::name_of(laws::Law::elasto_viscoplastic);
   const std::pair<std::optional<std::size_t> Square::*, std::pair<const char*, std::string>> corners[] = {
-      {&Square::mpm_solid, {"mpm", "elasto-viscoplastic"}},
+      {&Square::mpm_solid, {"mpm", solid}},
       {&Square::mpm_fluid, {"mpm", square.fluid}},
-      {&Square::foam_solid, {"foam", "elasto-viscoplastic"}},
+      {&Square::foam_solid, {"foam", solid}},
       {&Square::foam_fluid, {"foam", square.fluid}}};
   int filled = 0;
   for (const auto& [member, made_by] : corners) {
     square.*member = corner(comparison, made_by.first, made_by.second);
     filled += (square.*member).has_value();
-    if (!(square.*member)) square.missing.push_back(command_for(comparison, made_by.first, made_by.second));
+    if (square.*member) continue;
+    if (const auto command = command_for(comparison, made_by.first, made_by.second))
+      square.missing.push_back(*command);
   }
   if (filled < 2) return;
   // Where the scene names no run in OpenFOAM there is no square to want.

@@ -20,7 +20,6 @@
 namespace flowrest::foam {
 
 namespace fs = std::filesystem;
-using scenes::Model;
 using scenes::Scene;
 using scenes::SceneError;
 
@@ -61,21 +60,11 @@ bool belongs_to_case(const fs::path& name) {
 }
 
 void check_model(const Scene& scene) {
-  const auto& material = scene.material;
-  switch (material.model) {
-    case Model::elasto_viscoplastic:
-      break;
-    case Model::papanastasiou:
-      if (!material.regularisation_time)
-        refuse(scene, "model papanastasiou needs material.regularisation_time, in s and above 0");
-      break;
-    case Model::bi_viscous:
-      if (!material.critical_shear_rate)
-        refuse(scene, "model bi-viscous needs material.critical_shear_rate, in 1/s and above 0");
-      break;
-    case Model::newtonian:
-      break;
-  }
+  for (const laws::Parameter parameter : laws::every_parameter)
+    if (laws::needs(scene.material.model, parameter) && !scene.material.has(parameter))
+      refuse(scene, fmt::format("model {} needs material.{}, in {} and above 0",
+                                scenes::to_string(scene.material.model), laws::key_of(parameter),
+                                laws::unit_of(parameter)));
 }
 
 bool is_quarter(const Scene& scene) {

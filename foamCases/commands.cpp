@@ -9,6 +9,8 @@
 #include "runs/earlier_run.h"
 #include "runs/process.h"
 #include "runs/run_folder.h"
+#include "scenes/plausibility.h"
+#include "scenes/text.h"
 
 namespace flowrest::foam {
 
@@ -34,6 +36,7 @@ RunOutcome run_or_resume(const FoamArguments& arguments, RunOptions& options) {
   }
   const auto scene =
       scenes::load_scene(arguments.scene, scenes::overrides_of_command_line(arguments.set, arguments.model));
+  scenes::print_notes(scenes::plausibility_notes(scene));
   options.directory = arguments.directory.empty() ? std::filesystem::path("out") / scene.name /
                                                         ("foam-" + scenes::to_string(scene.material.model))
                                                   : std::filesystem::path(arguments.directory);
@@ -82,8 +85,7 @@ void add_commands(CLI::App& app) {
   auto* command = app.add_subcommand("foam", "Run a scene in interFoam: fills the case, runs it, gauges it");
   auto arguments = std::make_shared<FoamArguments>();
   auto* scene = command->add_option("SCENE", arguments->scene, "A scene's name, or the path of its file");
-  command->add_option("--model", arguments->model,
-                      "elasto-viscoplastic, papanastasiou, bi-viscous or newtonian");
+  command->add_option("--model", arguments->model, laws::all_names());
   command
       ->add_option("--set", arguments->set, "KEY=VALUE: overrides a key of the scene, e.g. foam.cell=0.005")
       ->take_all()

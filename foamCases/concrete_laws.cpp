@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <stdexcept>
 
 #include "foamCases/plug_in.h"
@@ -12,54 +13,66 @@
 namespace flowrest::foam {
 
 using scenes::FoamMixing;
-using scenes::Model;
 using scenes::Scene;
 
 namespace {
 
-std::string strain_rate_table(const scenes::Material& material) {
-  std::string text = "strainRateTable\n(\n";
+/// A law as OpenFOAM has it of its own; it takes stresses over the density.
+std::string built_in_viscosity(laws::Papanastasiou, const scenes::Material& material) {
+  std::string table = "strainRateTable\n(\n";
   for (const auto& point : papanastasiou_table(material))
-    text += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
-  return text + ");\n\n";
+    table += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
+  return table +
+         fmt::format(
+             ");\n\n"
+             "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / rho with eta = {} Pa s, tau0 "
+             "= {} Pa, m = {} s,\n"
+             "// given as a table of (rate in 1/s, viscosity in m2/s) that linear interpolation keeps "
+             "to 0.1 %.\n"
+             "concreteViscosity\n{{\n    transportModel  strainRateFunction;\n"
+             "    strainRateFunctionCoeffs\n    {{\n        function    table "
+             "$strainRateTable;\n    }}\n}}\n",
+             material.plastic_viscosity, material.yield_stress, material.regularisation_time.value());
 }
 
-/// OpenFOAM's own laws; they take stresses over the density.
-std::string built_in_viscosity(const scenes::Material& material) {
-  const double k = material.plastic_viscosity / material.density;
-  switch (material.model) {
-    case Model::papanastasiou:
-      return strain_rate_table(material) + fmt::format(
-                                               "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / "
-                                               "rho with eta = {} Pa s, tau0 = {} Pa, "
-                                               "m = {} s,\n"
-                                               "// given as a table of (rate in 1/s, viscosity in m2/s) that "
-                                               "linear interpolation keeps to 0.1 "
-                                               "%.\n"
-                                               "concreteViscosity\n{{\n    transportModel  "
-                                               "strainRateFunction;\n    strainRateFunctionCoeffs\n    "
-                                               "{{\n"
-                                               "        function    table $strainRateTable;\n    }}\n}}\n",
-                                               material.plastic_viscosity, material.yield_stress,
-                                               material.regularisation_time.value());
-    case Model::bi_viscous:
-      return fmt::format(
-          "// Bi-viscous: min(nu0, (tau0 / rate + eta) / rho) with eta = {} Pa s, tau0 = {} Pa; the branches "
-          "meet at\n"
-          "// {} 1/s. HerschelBulkley takes its stresses over the density.\n"
-          "concreteViscosity\n{{\n    transportModel  HerschelBulkley;\n    HerschelBulkleyCoeffs\n    {{\n"
-          "        nu0     {};\n        tau0    {};\n        k       {};\n        n       1;\n    }}\n}}\n",
-          material.plastic_viscosity, material.yield_stress, material.critical_shear_rate.value(),
-          bi_viscous_viscosity_at_rest(material), material.yield_stress / material.density, k);
-    case Model::newtonian:
-      return fmt::format(
-          "// Newtonian: eta / rho with eta = {} Pa s.\n"
-          "concreteViscosity\n{{\n    transportModel  Newtonian;\n    nu              {};\n}}\n",
-          material.plastic_viscosity, k);
-    case Model::elasto_viscoplastic:
-      break;
-  }
+std::string built_in_viscosity(laws::BiViscous, const scenes::Material& material) {
+  return fmt::format(
+      "// Bi-viscous: min(nu0, (tau0 / rate + eta) / rho) with eta = {} Pa s, tau0 = {} Pa; the branches "
+      "meet at\n"
+      "// {} 1/s. HerschelBulkley takes its stresses over the density.\n"
+      "concreteViscosity\n{{\n    transportModel  HerschelBulkley;\n    HerschelBulkleyCoeffs\n    {{\n"
+      "        nu0     {};\n        tau0    {};\n        k       {};\n        n       1;\n    }}\n}}\n",
+      material.plastic_viscosity, material.yield_stress, material.critical_shear_rate.value(),
+      viscosity_at_rest(material), material.yield_stress / material.density,
+      material.plastic_viscosity / material.density);
+}
+
+std::string built_in_viscosity(laws::Newtonian, const scenes::Material& material) {
+  return fmt::format(
+      "// Newtonian: eta / rho with eta = {} Pa s.\n"
+      "concreteViscosity\n{{\n    transportModel  Newtonian;\n    nu              {};\n}}\n",
+      material.plastic_viscosity, material.plastic_viscosity / material.density);
+}
+
+std::string built_in_viscosity(laws::ElastoViscoplastic, const scenes::Material&) {
   throw std::logic_error("a law that OpenFOAM does not have");
+}
+
+/// What flowrest's plug-in calls a law.
+const char* plug_in_type(laws::Papanastasiou) { return "PapanastasiouBingham"; }
+const char* plug_in_type(laws::BiViscous) { return "biViscousBingham"; }
+const char* plug_in_type(laws::Newtonian) { return "NewtonianConcrete"; }
+const char* plug_in_type(laws::ElastoViscoplastic) { return "elastoViscoplasticBingham"; }
+
+/// A key of [material] as OpenFOAM's dictionaries write words: regularisationTime.
+std::string dictionary_word(laws::Parameter parameter) {
+  std::string word;
+  bool capital = false;
+  for (const char* c = laws::key_of(parameter); *c != '\0'; ++c) {
+    if (*c != '_') word += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(*c))) : *c;
+    capital = *c == '_';
+  }
+  return word;
 }
 
 std::string mixing_name(FoamMixing mixing) {
@@ -70,7 +83,7 @@ std::string mixing_name(FoamMixing mixing) {
 std::string common_coefficients(const Scene& scene, const std::string& indent) {
   const auto& material = scene.material;
   std::string text = fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s\n",
-                                 indent, material.model == Model::newtonian ? 0.0 : material.yield_stress,
+                                 indent, laws::has_yield_stress(material.model) ? material.yield_stress : 0.0,
                                  material.plastic_viscosity);
   if (carries_flocculation(scene))
     text += fmt::format(
@@ -87,38 +100,32 @@ std::string common_coefficients(const Scene& scene, const std::string& indent) {
 
 std::string plug_in_viscosity(const Scene& scene) {
   const auto& material = scene.material;
-  std::string type, own;
-  switch (material.model) {
-    case Model::papanastasiou:
-      type = "PapanastasiouBingham";
-      own = fmt::format("    regularisationTime    {};  // s\n", material.regularisation_time.value());
-      break;
-    case Model::bi_viscous:
-      type = "biViscousBingham";
-      own = fmt::format("    criticalShearRate     {};  // 1/s\n", material.critical_shear_rate.value());
-      break;
-    case Model::newtonian:
-      type = "NewtonianConcrete";
-      break;
-    case Model::elasto_viscoplastic:
-      throw std::logic_error("a stress model, not a viscosity");
+  std::string own;
+  for (const laws::Parameter parameter : laws::every_parameter) {
+    const bool common =
+        parameter == laws::Parameter::yield_stress || parameter == laws::Parameter::plastic_viscosity;
+    if (!common && laws::needs(material.model, parameter))
+      own += fmt::format("    {:<22}{};  // {}\n", dictionary_word(parameter),
+                         material.flow_curve().parameters.*laws::member_of<double>(parameter),
+                         laws::unit_of(parameter));
   }
-  return fmt::format("concreteViscosity\n{{\n    transportModel      {};\n{}{}}}\n", type,
+  return fmt::format("concreteViscosity\n{{\n    transportModel      {};\n{}{}}}\n",
+                     laws::visit(material.model, [](auto law) { return plug_in_type(law); }),
                      common_coefficients(scene, "    "), own);
 }
 
-/// The elasto-viscoplastic law is a stress model; what the mixture is given as viscosity it does not use.
+/// A law that can rest is a stress model; what the mixture is given as viscosity it does not use.
 std::string plug_in_stress(const Scene& scene) {
   const auto& material = scene.material;
   const std::string indent(12, ' ');
   return fmt::format(
-      "concreteViscosity\n{{\n    transportModel      Newtonian;\n    nu                  {};\n}}\n\n"
-      "concreteStress\n{{\n    laminar\n    {{\n        laminarModel        elastoViscoplasticBingham;\n"
-      "        elastoViscoplasticBinghamCoeffs\n        {{\n"
-      "{}phase               concrete;\n{}rho                 {};  // kg/m3\n"
-      "{}youngsModulus       {};  // Pa\n{}poissonRatio        {};\n{}        }}\n    }}\n}}\n",
-      material.plastic_viscosity / material.density, indent, indent, material.density, indent,
-      material.youngs_modulus, indent, material.poisson_ratio, common_coefficients(scene, indent));
+      "concreteViscosity\n{{\n    transportModel      Newtonian;\n    nu                  {1};\n}}\n\n"
+      "concreteStress\n{{\n    laminar\n    {{\n        laminarModel        {0};\n        {0}Coeffs\n"
+      "        {{\n{2}phase               concrete;\n{2}rho                 {3};  // kg/m3\n"
+      "{2}youngsModulus       {4};  // Pa\n{2}poissonRatio        {5};\n{6}        }}\n    }}\n}}\n",
+      laws::visit(material.model, [](auto law) { return plug_in_type(law); }),
+      material.plastic_viscosity / material.density, indent, material.density, material.youngs_modulus,
+      material.poisson_ratio, common_coefficients(scene, indent));
 }
 
 std::string function_object(const std::string& type, const std::string& keywords) {
@@ -169,8 +176,11 @@ int pressure_correctors(const Scene& scene, bool plug_in) {
 
 std::string stress_model(const Scene& scene, bool plug_in) {
   const std::string none = "\nconcreteStress\n{\n}\n";
-  if (!plug_in) return built_in_viscosity(scene.material) + none;
-  if (scene.material.model == Model::elasto_viscoplastic) return plug_in_stress(scene);
+  if (!plug_in)
+    return laws::visit(scene.material.model,
+                       [&](auto law) { return built_in_viscosity(law, scene.material); }) +
+           none;
+  if (laws::can_rest(scene.material.model)) return plug_in_stress(scene);
   return plug_in_viscosity(scene) + none;
 }
 
@@ -180,7 +190,7 @@ std::string concrete_laws(const Scene& scene, bool plug_in) {
   std::string sampled, state;
   if (plug_in && is_vessel(scene)) sampled += " shearRate";
   if (plug_in && carries_flocculation(scene)) sampled += " flocculation";
-  if (scene.material.model == Model::elasto_viscoplastic) {
+  if (laws::can_rest(scene.material.model)) {
     sampled += " plasticShearRate";
     state += " stress";
   }

@@ -24,6 +24,7 @@
 #include "foamCases/solver_log.h"
 #include "foamCases/vessel_mesh.h"
 #include "foamCases/vessel_sampler.h"
+#include "runs/command.h"
 #include "runs/console.h"
 #include "runs/machine.h"
 #include "runs/process.h"
@@ -118,7 +119,7 @@ std::string step_rule(const scenes::Scene& scene, bool plug_in) {
   const char* bound = "cell^2 density / plastic viscosity";
   if (scene.foam.max_time_step) {
     bound = "foam.max_time_step";
-  } else if (scene.material.model == scenes::Model::elasto_viscoplastic) {
+  } else if (laws::can_rest(scene.material.model)) {
     bound = "1.5 cells at the speed of shear waves";
   }
   const double first = scenes::largest_foam_step(scene), most = scenes::grown_foam_step(scene);
@@ -408,8 +409,8 @@ class CaseRun {
     monitor_.finish();
     const double wall = wall_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     if (status_ == Status::interrupted && reason_.empty())
-      reason_ = fmt::format("interrupted at {:.4g} s; go on with: flowrest foam --resume {}", time(),
-                            options_.directory.string());
+      reason_ = fmt::format("interrupted at {:.4g} s; go on with: {}", time(),
+                            runs::command_line(resume_arguments()));
     write_info(wall);
     if (status_ == Status::failed)
       writer_.fail({fault_, reason_}, verdict());
@@ -421,6 +422,10 @@ class CaseRun {
                     runs::to_string(status_), time(), sampler_ ? sampler_->progress() : "nothing run",
                     writer_.info()["verdict"].get<std::string>(), steps_, static_cast<double>(steps_) / wall,
                     static_cast<double>(steps_ * cells()) / wall, 3600.0 * time() / wall));
+  }
+
+  std::vector<std::string> resume_arguments() const {
+    return {"foam", "--resume", runs::path_argument(options_.directory)};
   }
 
   void write_info(double wall) {

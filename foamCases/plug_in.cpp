@@ -11,7 +11,6 @@ namespace flowrest::foam {
 
 namespace fs = std::filesystem;
 using scenes::FoamLaws;
-using scenes::Model;
 using scenes::Scene;
 
 namespace {
@@ -50,14 +49,14 @@ Scene settled(Scene scene, bool plug_in) {
 }
 
 bool carries_flocculation(const Scene& scene) {
-  return scene.thixotropy && scene.material.model != Model::newtonian;
+  return scene.thixotropy && laws::has_yield_stress(scene.material.model);
 }
 
 bool needs_plug_in(const Scene& scene) {
   // What is mended where cells lean is mended by the plug-in.
   const bool leans = scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel;
-  return leans || scene.base.law == scenes::Wall::friction ||
-         scene.material.model == Model::elasto_viscoplastic || carries_flocculation(scene);
+  return leans || scene.base.law == scenes::Wall::friction || laws::can_rest(scene.material.model) ||
+         carries_flocculation(scene);
 }
 
 std::optional<fs::path> plug_in_for(const Scene& scene) {
@@ -69,7 +68,7 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
         scene.path.string(), law(scene)));
   }
   // Without a surface one viscosity is one viscosity.
-  if (scene.material.model == Model::newtonian && scene.kind == scenes::Kind::duct && !needed)
+  if (!laws::has_yield_stress(scene.material.model) && scene.kind == scenes::Kind::duct && !needed)
     return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)

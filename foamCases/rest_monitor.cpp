@@ -22,8 +22,7 @@ double time_to_trust_rest(const scenes::Scene& scene) {
 }  // namespace
 
 RestMonitor::RestMonitor(const scenes::Scene& scene)
-    : can_rest_(scene.material.model == scenes::Model::elasto_viscoplastic &&
-                scene.material.yield_stress > 0.0),
+    : can_rest_(laws::can_rest(scene.material.model) && scene.material.yield_stress > 0.0),
       stops_(scene.time.stop_at_rest),
       bound_(scene.time.rest_bound),
       patience_(time_to_trust_rest(scene)) {

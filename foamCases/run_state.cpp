@@ -12,6 +12,7 @@
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
 #include "foamCases/sampler.h"
+#include "runs/command.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::foam {
@@ -40,7 +41,7 @@ std::string without_end(const std::string& parameters) {
 /// Cell fields of a full state, with their components.
 std::vector<std::pair<std::string, int>> state_fields(const scenes::Scene& scene, bool plug_in) {
   std::vector<std::pair<std::string, int>> fields{{"alpha.concrete", 1}, {"U", 3}, {"p_rgh", 1}};
-  if (scene.material.model == scenes::Model::elasto_viscoplastic) fields.emplace_back("stress", 6);
+  if (laws::can_rest(scene.material.model)) fields.emplace_back("stress", 6);
   if (scene.thixotropy && plug_in) fields.emplace_back("flocculation", 1);
   return fields;
 }

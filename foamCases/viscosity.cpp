@@ -17,9 +17,7 @@ constexpr double largest_rate = 1e6;
 }  // namespace
 
 double papanastasiou_viscosity(const scenes::Material& material, double shear_rate) {
-  const double m = material.regularisation_time.value();
-  const double yield_part = shear_rate > 0.0 ? -std::expm1(-m * shear_rate) / shear_rate : m;
-  return (material.plastic_viscosity + material.yield_stress * yield_part) / material.density;
+  return laws::Papanastasiou::viscosity(material.flow_curve().parameters, shear_rate) / material.density;
 }
 
 std::vector<TablePoint> papanastasiou_table(const scenes::Material& material) {
@@ -36,9 +34,8 @@ std::vector<TablePoint> papanastasiou_table(const scenes::Material& material) {
   return table;
 }
 
-double bi_viscous_viscosity_at_rest(const scenes::Material& material) {
-  return (material.plastic_viscosity + material.yield_stress / material.critical_shear_rate.value()) /
-         material.density;
+double viscosity_at_rest(const scenes::Material& material) {
+  return material.flow_curve().largest_viscosity() / material.density;
 }
 
 }  // namespace flowrest::foam

@@ -21,8 +21,9 @@ double papanastasiou_viscosity(const scenes::Material&, double shear_rate);
 /// 0.1 %.
 std::vector<TablePoint> papanastasiou_table(const scenes::Material&);
 
-/// The kinematic viscosity below the critical shear rate, (eta + tau0 / critical_shear_rate) / rho, m2/s:
-/// with it HerschelBulkley's min(nu0, tau0 / rate + k) changes branch at that rate, with a continuous stress.
-double bi_viscous_viscosity_at_rest(const scenes::Material&);
+/// The kinematic viscosity of a fluid at rest, m2/s. Of the bi-viscous law it is (eta + tau0 /
+/// critical_shear_rate) / rho: with it HerschelBulkley's min(nu0, tau0 / rate + k) changes branch at that
+/// rate, with a continuous stress.
+double viscosity_at_rest(const scenes::Material&);
 
 }  // namespace flowrest::foam

@@ -61,10 +61,11 @@ TEST(PapanastasiouTable, AscendsEvenWithoutPlasticViscosity) {
 }
 
 TEST(BiViscous, BranchesMeetAtTheCriticalShearRate) {
-  const auto concrete = material(50, 50, 100);
+  auto concrete = material(50, 50, 100);
+  concrete.model = scenes::Model::bi_viscous;
   const double rate = *concrete.critical_shear_rate;
   const double flowing = (concrete.yield_stress / rate + concrete.plastic_viscosity) / concrete.density;
-  EXPECT_DOUBLE_EQ(bi_viscous_viscosity_at_rest(concrete), flowing);
+  EXPECT_DOUBLE_EQ(viscosity_at_rest(concrete), flowing);
 }
 
 }  // namespace

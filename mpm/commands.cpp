@@ -10,14 +10,16 @@
 #include "runs/earlier_run.h"
 #include "runs/process.h"
 #include "runs/run_folder.h"
+#include "scenes/plausibility.h"
 #include "scenes/scene.h"
+#include "scenes/text.h"
 
 namespace flowrest::mpm {
 
 namespace {
 
 struct MpmOptions {
-  std::string scene, model, output, resume, instruction_set;
+  std::string scene, model, output, resume, instruction_set, method = "fast";
   std::vector<std::string> set;
   bool force = false, json = false, quiet = false;
 };
@@ -27,6 +29,7 @@ RunResult run_or_resume(const MpmOptions& options) {
   run_options.quiet = options.quiet;
   run_options.force = options.force;
   run_options.instruction_set = options.instruction_set;
+  if (options.method == "plain") run_options.method = Method::plain;
   const runs::InterruptGuard guard;
   run_options.interrupted = [] { return runs::InterruptGuard::count() > 0; };
   if (!options.resume.empty()) {
@@ -35,8 +38,10 @@ RunResult run_or_resume(const MpmOptions& options) {
   }
   const scenes::Scene scene =
       scenes::load_scene(options.scene, scenes::overrides_of_command_line(options.set, options.model));
+  scenes::print_notes(scenes::plausibility_notes(scene));
   run_options.directory = options.output.empty() ? std::filesystem::path("out") / scene.name /
-                                                       ("mpm-" + scenes::to_string(scene.material.model))
+                                                       ("mpm-" + scenes::to_string(scene.material.model) +
+                                                        (options.method == "plain" ? "-plain" : ""))
                                                  : std::filesystem::path(options.output);
   return run(scene, run_options);
 }
@@ -57,9 +62,7 @@ void add_commands(CLI::App& app) {
   auto options = std::make_shared<MpmOptions>();
   CLI::App* command = app.add_subcommand("mpm", "Run a scene with the material point solver");
   auto* scene = command->add_option("scene", options->scene, "A scene's name, or the path of its file");
-  command->add_option(
-      "--model", options->model,
-      "elasto-viscoplastic, papanastasiou, bi-viscous or newtonian, in place of material.model");
+  command->add_option("--model", options->model, laws::all_names() + ", in place of material.model");
   command->add_option("--set", options->set, "KEY=VALUE: override a key by its dotted path")
       ->allow_extra_args(false);
   command->add_option("-o,--output", options->output, "The run directory (out/SCENE/mpm-MODEL)");
@@ -75,11 +78,18 @@ void add_commands(CLI::App& app) {
       ->add_option("--instruction-set", options->instruction_set,
                    "avx512, avx2 or generic (the best this machine runs)")
       ->check(CLI::IsMember(instruction_sets()));
+  command
+      ->add_option("--method", options->method,
+                   "fast, or plain: the same steps by the readable code of mpm/plain, several times slower")
+      ->check(CLI::IsMember({"fast", "plain"}))
+      ->excludes(resume_option);
   command->add_flag("--json", options->json, "End with a machine-readable line");
   command->add_flag("--quiet", options->quiet, "Print no progress");
   command->callback([options, scene, resume_option] {
     if (scene->count() == 0 && resume_option->count() == 0)
       throw CLI::RequiredError("a scene, or --resume RUN");
+    if (options->method == "plain" && !options->instruction_set.empty())
+      throw CLI::ExcludesError("--method plain", "--instruction-set");
     check_options(*options);
     const RunResult result = run_or_resume(*options);
     if (options->json)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "runs/command.h"
+
 namespace flowrest::runs {
 
 namespace fs = std::filesystem;
@@ -71,6 +73,7 @@ EarlierRun read_earlier_run(const fs::path& directory, const std::string& solver
   run.scene = scenes::parse_scene(text("resolved_toml"), directory / "run.json");
   if (!text("scene_name").empty()) run.scene.name = text("scene_name");
   run.scene.source = text("scene");
+  if (const auto request = request_of(run.info)) run.scene.request = *request;
   for (const Status status : {Status::at_rest, Status::end_time, Status::interrupted, Status::failed})
     if (text("status") == to_string(status)) run.status = status;
   return run;
@@ -92,6 +95,14 @@ scenes::Scene scene_to_go_on_with(const EarlierRun& run, const std::vector<std::
                                             scenes::overrides_of_command_line(set));
   scene.name = run.scene.name;
   scene.source = run.scene.source;
+  scene.request = run.scene.request;
+  // So that a command made of it asks for the run as it is now.
+  for (const std::string& setting : set) {
+    const std::string key = setting.substr(0, setting.find('='));
+    std::erase_if(scene.request.overrides.set,
+                  [&](const std::string& earlier) { return earlier.starts_with(key + "="); });
+    scene.request.overrides.set.push_back(setting);
+  }
   check_changes(run, scene, free);
   if (!run.finished()) return scene;
   const bool goes_past_rest = run.status == Status::at_rest && !scene.time.stop_at_rest;

@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <sstream>
-#include <string_view>
 #include <system_error>
 
+#include "runs/command.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
+#include "scenes/plausibility.h"
 
 namespace flowrest::runs {
 
@@ -42,83 +41,6 @@ std::string read_text(const fs::path& path) {
 
 /// A number as CSV has it; what reads nothing is an empty cell.
 std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{:.17g}", value); }
-
-std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ",")); }
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0;;) {
-    const auto comma = line.find(',', begin);
-    cells.push_back(trimmed(line.substr(begin, comma == std::string_view::npos ? comma : comma - begin)));
-    if (comma == std::string_view::npos) return cells;
-    begin = comma + 1;
-  }
-}
-
-std::optional<double> parsed(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size()) return std::nullopt;
-  // Underflow and overflow are numbers all the same; from_chars leaves the value alone there.
-  if (error == std::errc::result_out_of_range) return std::strtod(std::string(text).c_str(), nullptr);
-  return error == std::errc{} ? std::optional(value) : std::nullopt;
-}
-
-struct Line {
-  std::string_view text;
-  bool ended = false;  ///< by a newline
-};
-
-std::vector<Line> lines_of(std::string_view text) {
-  std::vector<Line> lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const auto end = text.find('\n', begin);
-    const bool ended = end != std::string_view::npos;
-    lines.push_back({text.substr(begin, ended ? end - begin : end), ended});
-    begin = ended ? end + 1 : text.size();
-  }
-  return lines;
-}
-
-/// The first line of a CSV file; empty where there is none, or none to its end.
-std::string header_of(const fs::path& path) {
-  if (!fs::exists(path)) return "";
-  const std::string text = read_text(path);
-  const auto lines = lines_of(text);
-  return lines.empty() || !lines.front().ended ? "" : std::string(trimmed(lines.front().text));
-}
-
-/// Cuts a CSV file back to whole rows whose first number is at most `time`; one without a header goes. `last`
-/// becomes the last row's first number.
-void cut_back(const fs::path& path, double time, std::optional<double>& last) {
-  if (!fs::exists(path)) return;
-  const std::string text = read_text(path);
-  const auto lines = lines_of(text);
-  if (lines.empty() || !lines.front().ended) {
-    fs::remove(path);
-    return;
-  }
-  std::string kept(lines.front().text);
-  kept += '\n';
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (!lines[i].ended) break;
-    const auto row_time = parsed(cells_of(lines[i].text).front());
-    if (!row_time || *row_time > time) continue;
-    last = row_time;
-    last = row_time;
-    kept.append(lines[i].text);
-    kept += '\n';
-  }
-  write_atomically(path, kept);
-}
 
 std::string profile_header(scenes::Kind kind) {
   switch (kind) {
@@ -148,14 +70,14 @@ std::vector<Profile> profiles_of(const Table& table, const fs::path& path) {
   if (table.columns.size() != 3 || table.names.front() != "time_s")
     throw RunError(
         fmt::format("{}:1: the columns are '{}'; three are expected: time_s, a coordinate, a value",
-                    path.string(), joined(table.names)));
+                    path.string(), csv_header(table.names)));
   std::vector<Profile> profiles;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double time = table.columns[0][row];
     if (profiles.empty() || time != profiles.back().time) {
       if (!std::isfinite(time) || (!profiles.empty() && time < profiles.back().time))
         throw RunError(fmt::format("{}:{}: time {} does not follow {}; times must ascend", path.string(),
-                                   row + 2, time, profiles.empty() ? 0.0 : profiles.back().time));
+                                   table.lines[row], time, profiles.empty() ? 0.0 : profiles.back().time));
       profiles.push_back({time, {}, {}});
     }
     profiles.back().coordinate.push_back(table.columns[1][row]);
@@ -241,7 +163,7 @@ RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const C
   auto info = read_info(path, problem);
   if (!info) throw RunError(fmt::format("{}: cannot be resumed: {}", path.string(), problem));
   RunWriter writer(std::move(lock), scene.kind, std::move(*info));
-  if (const std::string there = header_of(directory / "profiles.csv");
+  if (const std::string there = header_of_csv(directory / "profiles.csv");
       !there.empty() && there != writer.profile_header_)
     throw RunError(fmt::format("{}:1: the columns are '{}', a {} writes '{}'",
                                (directory / "profiles.csv").string(), there, scenes::to_string(scene.kind),
@@ -252,6 +174,7 @@ RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const C
   writer.info_.erase("failure");
   writer.info_["resumed_at_s"].push_back(at.time);
   writer.info_["provenance"] = provenance();
+  if (writer.info_.contains("request")) writer.info_["request"] = request_json(scene.request);
   writer.info_["settings"] = Json::parse(scenes::resolved_json(scene));
   writer.info_["resolved_toml"] = scenes::resolved_toml(scene);
   writer.write();
@@ -265,13 +188,14 @@ RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const C
 }
 
 void RunWriter::cut_back_to(const Continuation& at) {
-  cut_back(file("history.csv"), at.history, last_row_);
-  cut_back(file("profiles.csv"), at.profiles, last_profile_);
-  if (const std::string header = header_of(file("history.csv")); !header.empty()) {
-    for (const auto cell : cells_of(header)) history_columns_.emplace_back(cell);
+  last_row_ = cut_csv_back(file("history.csv"), at.history);
+  last_profile_ = cut_csv_back(file("profiles.csv"), at.profiles);
+  if (const std::string header = header_of_csv(file("history.csv")); !header.empty()) {
+    std::istringstream names(header);
+    for (std::string name; std::getline(names, name, ',');) history_columns_.push_back(name);
     history_.emplace(file("history.csv"));
   }
-  if (!header_of(file("profiles.csv")).empty()) profiles_.emplace(file("profiles.csv"));
+  if (!header_of_csv(file("profiles.csv")).empty()) profiles_.emplace(file("profiles.csv"));
 }
 
 void RunWriter::history_columns(const std::vector<std::string>& names) {
@@ -281,12 +205,12 @@ void RunWriter::history_columns(const std::vector<std::string>& names) {
   if (!history_columns_.empty()) {
     if (names != history_columns_)
       throw RunError(fmt::format("{}:1: the columns are '{}', this run would write '{}'", path.string(),
-                                 joined(history_columns_), joined(names)));
+                                 csv_header(history_columns_), csv_header(names)));
     return;
   }
   history_columns_ = names;
   history_.emplace(path);
-  history_->append(joined(names) + '\n');
+  history_->append(csv_header(names) + '\n');
 }
 
 void RunWriter::history(std::span<const double> row) {
@@ -342,47 +266,6 @@ void RunWriter::fail(const Failure& failure, const std::string& verdict) {
   info_["failure"] = to_string(failure.fault);
   finish(Status::failed, failure.reason,
          verdict.starts_with("noisy") ? verdict : verdict_of_failure(failure.fault));
-}
-
-bool Table::has(const std::string& name) const {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-const std::vector<double>& Table::at(const std::string& name) const {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw RunError(fmt::format("no column '{}'; there are: {}", name, joined(names)));
-  return columns[static_cast<std::size_t>(found - names.begin())];
-}
-
-Table read_csv(const fs::path& path, bool complete) {
-  const std::string text = read_text(path);
-  auto lines = lines_of(text);
-  if (!complete && !lines.empty() && !lines.back().ended) lines.pop_back();
-  Table table;
-  if (lines.empty()) return table;
-  for (const auto cell : cells_of(lines.front().text)) {
-    if (cell.empty() || table.has(std::string(cell)))
-      throw RunError(fmt::format("{}:1: column {} is {}; every column needs a name of its own", path.string(),
-                                 table.names.size() + 1,
-                                 cell.empty() ? "unnamed" : "a second '" + std::string(cell) + "'"));
-    table.names.emplace_back(cell);
-  }
-  table.columns.resize(table.names.size());
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (trimmed(lines[i].text).empty()) continue;
-    const auto cells = cells_of(lines[i].text);
-    if (cells.size() != table.names.size())
-      throw RunError(fmt::format("{}:{}: {} values where the header names {}", path.string(), i + 1,
-                                 cells.size(), table.names.size()));
-    for (std::size_t column = 0; column < cells.size(); ++column) {
-      const auto value = cells[column].empty() ? nothing : parsed(cells[column]);
-      if (!value)
-        throw RunError(fmt::format("{}:{}: '{}' in column {} is not a number", path.string(), i + 1,
-                                   std::string(cells[column]), table.names[column]));
-      table.columns[column].push_back(*value);
-    }
-  }
-  return table;
 }
 
 std::string Run::label() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runs/csv.h"
 #include "runs/errors.h"
 #include "runs/folder_lock.h"
 #include "runs/machine.h"
@@ -100,21 +101,6 @@ class RunWriter {
   std::string profile_header_;
   std::optional<double> last_row_, last_profile_;  ///< s
 };
-
-/// A table read from CSV: named columns of equal length.
-struct Table {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-  bool has(const std::string& name) const;
-  /// @throws RunError naming the columns there are.
-  const std::vector<double>& at(const std::string& name) const;
-  std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
-};
-/// A last line that does not end in a newline was cut off by an interruption and is left out, unless
-/// `complete` says that whoever wrote the file came to the end of it. An empty cell reads nothing
-/// (`runs::nothing`).
-/// @throws RunError with file:line of the first malformed row.
-Table read_csv(const std::filesystem::path&, bool complete = false);
 
 struct Profile {
   double time = 0.0;               ///< s

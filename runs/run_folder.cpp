@@ -6,8 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "laws/law.h"
+#include "runs/command.h"
 #include "runs/gauges.h"
 #include "runs/run_directory.h"
+#include "scenes/plausibility.h"
 
 namespace flowrest::runs {
 
@@ -16,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// The settings that a run of this solver hangs on.
+/// The settings that a run of this solver hangs on: not what only another law reads, either.
 Json bearing_on(const std::string& solver, Json settings) {
   if (!settings.is_object()) return settings;
   for (const char* name : {"title", "runs"}) settings.erase(name);
@@ -28,9 +31,9 @@ Json bearing_on(const std::string& solver, Json settings) {
   if (settings.contains("material")) {
     Json& material = settings["material"];
     const std::string model = material.value("model", "");
-    for (const auto& [law, key] :
-         {std::pair{"papanastasiou", "regularisation_time"}, {"bi-viscous", "critical_shear_rate"}})
-      if (model != law) material.erase(key);
+    if (const auto law = laws::law_named(model))
+      for (const laws::Parameter parameter : laws::every_parameter)
+        if (!laws::needs(*law, parameter)) material.erase(laws::key_of(parameter));
   }
   return settings;
 }
@@ -86,6 +89,8 @@ Json first_info(const scenes::Scene& scene, const std::string& solver, const Jso
                {"reason", ""},
                {"verdict", ""},
                {"provenance", provenance()},
+               {"request", request_json(scene.request)},
+               {"notes", scenes::plausibility_notes(scene)},
                {"scene", scene.source},
                {"settings", Json::parse(scenes::resolved_json(scene))},
                {"resolved_toml", scenes::resolved_toml(scene)},

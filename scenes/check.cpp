@@ -182,38 +182,29 @@ void check_dam_break(const Case& c) {
   check_cell(c, "mpm.cell", c.scene().mpm.cell, "column", std::min(dam.column_length, dam.column_height));
 }
 
+/// Faults of what a model needs and the scene does not give.
 void check_models(const Case& c) {
   if (!c.usable({"material.model", "runs.mpm", "runs.foam"})) return;
-  const Material& material = c.scene().material;
-  for (const Model model : models_in_use(c.scene())) {
-    if (model != Model::newtonian && !c.given.gives("material.yield_stress")) {
-      c.fault("material.yield_stress",
-              fmt::format("material.yield_stress is missing; needed by the model {}", to_string(model)));
-      break;  // once is enough
+  std::vector<laws::Parameter> known;
+  for (const Model model : models_in_use(c.scene()))
+    for (const laws::Parameter parameter : laws::every_parameter) {
+      const std::string path = fmt::format("material.{}", laws::key_of(parameter));
+      if (!laws::needs(model, parameter) || !c.usable({path}) || c.given.gives(path)) continue;
+      if (std::find(known.begin(), known.end(), parameter) != known.end()) continue;  // once is enough
+      known.push_back(parameter);
+      std::string instead;
+      if (parameter == laws::Parameter::critical_shear_rate) {
+        if (c.given.gives("material.regularisation_time")) continue;
+        instead = ": critical_shear_rate or regularisation_time, of which it is the inverse";
+      }
+      c.fault(path, fmt::format("{} is missing; needed by the model {}{}", path, to_string(model), instead));
     }
-  }
-  for (const Model model : models_in_use(c.scene())) {
-    if (model == Model::papanastasiou && c.usable({"material.regularisation_time"}) &&
-        !material.regularisation_time) {
-      c.fault("material.regularisation_time",
-              "material.regularisation_time is missing; needed by the model papanastasiou");
-    }
-    if (model == Model::bi_viscous &&
-        c.usable({"material.regularisation_time", "material.critical_shear_rate"}) &&
-        !material.critical_shear_rate) {
-      c.fault(
-          "material.critical_shear_rate",
-          "material.critical_shear_rate is missing; needed by the model bi-viscous: critical_shear_rate or "
-          "regularisation_time, of which it is the inverse");
-    }
-  }
 }
 
 void check_foam_runs(const Case& c) {
   const std::vector<Model>& models = c.scene().runs.foam;
   if (!c.usable({"runs.foam"}) || models.empty()) return;
-  const bool fluids = std::any_of(models.begin(), models.end(),
-                                  [](Model model) { return model != Model::elasto_viscoplastic; });
+  const bool fluids = !std::all_of(models.begin(), models.end(), laws::can_rest);
   if (fluids && c.usable({"material.plastic_viscosity", "foam.max_time_step"}) &&
       c.scene().material.plastic_viscosity == 0.0 && !c.scene().foam.max_time_step) {
     c.fault("material.plastic_viscosity",

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "scenes/plausibility.h"
 #include "scenes/scene.h"
 #include "scenes/summary.h"
+#include "scenes/text.h"
 
 namespace flowrest::scenes {
 
@@ -55,6 +57,7 @@ void add_check(CLI::App& app) {
   command->add_flag("--json", options->json, "Add a machine-readable last line");
   command->callback([options] {
     const Scene scene = load_scene(options->scene, overrides_of_command_line(options->set, options->model));
+    print_notes(plausibility_notes(scene));
     fmt::print("{}", check_text(scene));
     if (options->json) fmt::print("{}\n", check_json(scene));
   });

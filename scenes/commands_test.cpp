@@ -71,6 +71,17 @@ TEST(CheckCommand, EndsWithALineOfJson) {
   EXPECT_TRUE(json["step_limits"]["viscous_s"].is_null());
 }
 
+TEST(CheckCommand, NotesWhatIsImplausibleOnStderrAndInItsJson) {
+  testing::internal::CaptureStderr();
+  const std::string output = output_of({"check", "roussel-slump", "--json", "--set", "material.density=2.3"});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("Note: material.density is 2.3 kg/m3"));
+  EXPECT_EQ(output.find("Note: "), std::string::npos);
+  const auto end = output.find_last_not_of('\n');
+  const auto json = nlohmann::json::parse(output.substr(output.rfind('\n', end) + 1));
+  EXPECT_THAT(json["notes"].get<std::vector<std::string>>(),
+              testing::Contains(HasSubstr("in t/m3 or g/cm3 that would be 2300 kg/m3")));
+}
+
 TEST(CheckCommand, RefusesWhatTheReaderRefuses) {
   EXPECT_THROW(output_of({"check", "no-such-scene"}), SceneError);
   EXPECT_THROW(output_of({"check", "roussel-slump", "--model", "water"}), SceneError);

@@ -82,7 +82,7 @@ double foam_steps(const Scene& scene) {
   const double unhurried = unhurried_foam_steps(scene);
   constexpr double between_bars = 0.15;
   double speed = std::sqrt(2.0 * scene.forces.gravity * scene.body_height());
-  if (scene.kind == Kind::l_box && scene.material.model == Model::elasto_viscoplastic)
+  if (scene.kind == Kind::l_box && laws::can_rest(scene.material.model))
     speed *= between_bars;
   else if (scene.kind != Kind::v_funnel)
     return unhurried;

@@ -151,6 +151,10 @@ Given read_document(const std::string& text, const std::string& source, Faults& 
   Given given;
   given.start = {source, 1, 1};
   given.unreadable = true;
+  if (const std::string fault = encoding_fault(text); !fault.empty()) {
+    faults.add(given.start, fault);
+    return given;
+  }
   if (!is_readable(text, given.start, faults)) return given;
   const std::optional<toml::table> document = parsed(text, source, faults);
   if (!document) return given;

@@ -23,10 +23,11 @@ const NameTable<Dimension>& names_of(Dimension) {
 }
 
 const NameTable<Model>& names_of(Model) {
-  static const NameTable<Model> table = {{Model::elasto_viscoplastic, "elasto-viscoplastic"},
-                                         {Model::papanastasiou, "papanastasiou"},
-                                         {Model::bi_viscous, "bi-viscous"},
-                                         {Model::newtonian, "newtonian"}};
+  static const NameTable<Model> table = [] {
+    NameTable<Model> names;
+    for (const Model law : laws::every_law) names.emplace_back(law, laws::name_of(law));
+    return names;
+  }();
   return table;
 }
 

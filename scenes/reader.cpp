@@ -51,9 +51,8 @@ std::vector<std::string> scene_names(const fs::path& folder) {
 /// folder.
 /// @throws SceneError naming the scenes there are.
 fs::path find_scene(const std::string& scene, const fs::path& folder) {
-  const bool is_path = scene.ends_with(".toml") || scene.find('/') != std::string::npos;
   std::error_code error;
-  if (is_path) return fs::path(scene).is_absolute() ? fs::path(scene) : folder / scene;
+  if (is_path(scene)) return fs::path(scene).is_absolute() ? fs::path(scene) : folder / scene;
   for (const fs::path& place : {folder, scenes_folder()}) {
     if (fs::exists(place / (scene + ".toml"), error)) return place / (scene + ".toml");
   }
@@ -217,6 +216,10 @@ Scene build(const Given& given, Faults& faults) {
 
 }  // namespace
 
+bool is_path(const std::string& named) {
+  return named.ends_with(".toml") || named.find('/') != std::string::npos;
+}
+
 Scene parse_scene(const std::string& text, const std::filesystem::path& path, const Overrides& overrides) {
   Faults faults;
   Given given = read_layers(text, path, {}, faults);
@@ -227,13 +230,16 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path, co
   scene.name = path.stem().string();
   scene.path = path;
   scene.source = text;
+  std::error_code error;
+  scene.request = {path.string(), fs::absolute(path, error).lexically_normal(), overrides};
   return scene;
 }
 
-Scene load_scene(const std::string& scene, const Overrides& overrides) {
-  const bool is_path = scene.ends_with(".toml") || scene.find('/') != std::string::npos;
-  const fs::path path = is_path ? fs::path(scene) : find_scene(scene, scenes_folder());
-  return parse_scene(read_text(path), path, overrides);
+Scene load_scene(const std::string& named, const Overrides& overrides) {
+  const fs::path path = is_path(named) ? fs::path(named) : find_scene(named, scenes_folder());
+  Scene scene = parse_scene(read_text(path), path, overrides);
+  scene.request.scene = named;
+  return scene;
 }
 
 Overrides overrides_of_command_line(const std::vector<std::string>& set, const std::string& model) {

@@ -84,6 +84,28 @@ double Material::longitudinal_speed() const {
   return std::sqrt((bulk_modulus() + 4.0 / 3.0 * shear_modulus()) / density);
 }
 
+bool Material::has(laws::Parameter parameter) const {
+  switch (parameter) {
+    case laws::Parameter::regularisation_time:
+      return regularisation_time.has_value();
+    case laws::Parameter::critical_shear_rate:
+      return critical_shear_rate.has_value();
+    default:
+      return true;
+  }
+}
+
+bool Material::suits(Model law) const {
+  return std::all_of(std::begin(laws::every_parameter), std::end(laws::every_parameter),
+                     [&](laws::Parameter p) { return !laws::needs(law, p) || has(p); });
+}
+
+laws::FlowCurve Material::flow_curve() const {
+  return {model,
+          {yield_stress, plastic_viscosity, regularisation_time.value_or(0.0),
+           critical_shear_rate.value_or(1.0)}};
+}
+
 double Forces::body_force_at(double time) const {
   double force = 0.0;
   for (const auto& [from, value] : body_force) {

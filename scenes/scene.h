@@ -10,13 +10,15 @@
 #include <variant>
 #include <vector>
 
+#include "laws/law.h"
+
 /// The scene: what is simulated, read from TOML, checked and resolved once for every solver, in SI units.
 namespace flowrest::scenes {
 
 enum class Kind { slump, duct, l_box, v_funnel, dam_break };
 /// What is computed of a body: `half` and `quarter` are cut along its planes of symmetry.
 enum class Dimension { axisymmetric, plane, half, quarter, full };
-enum class Model { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
+using Model = laws::Law;
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
 enum class Seeding { lattice, jittered, gmsh };
@@ -133,6 +135,12 @@ struct Material {
   double bulk_modulus() const;        ///< K0 = E / (3 (1 - 2 nu)), Pa
   double shear_modulus() const;       ///< G0 = E / (2 (1 + nu)), Pa
   double longitudinal_speed() const;  ///< sqrt((K0 + 4 G0 / 3) / density), m/s
+  /// Whether it has a parameter that a law may need.
+  bool has(laws::Parameter) const;
+  /// Whether it has all that a law needs.
+  bool suits(Model) const;
+  /// Its law in steady shear; a parameter that it does not have is 0, a critical shear rate 1.
+  laws::FlowCurve flow_curve() const;
   bool operator==(const Material&) const = default;
 };
 
@@ -255,10 +263,25 @@ struct Runs {
   bool operator==(const Runs&) const = default;
 };
 
+/// What the command line lays over a scene.
+struct Overrides {
+  std::vector<std::string>
+      set;                     ///< "material.yield_stress=100": TOML values; a word may stand without quotes
+  std::optional<Model> model;  ///< --model
+};
+
+/// How a scene was asked for: what a command needs to ask for it again.
+struct Request {
+  std::string scene;           ///< as it was named: a name, or the path of a file
+  std::filesystem::path file;  ///< that it was read from, absolute
+  Overrides overrides;
+};
+
 struct Scene {
   std::string name;            ///< file name without extension
   std::filesystem::path path;  ///< the file it was read from
   std::string source;          ///< the file's text, as read
+  Request request;
   std::string title;
   Kind kind = Kind::slump;
   Runs runs;
@@ -298,13 +321,6 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the command line lays over a scene.
-struct Overrides {
-  std::vector<std::string>
-      set;                     ///< "material.yield_stress=100": TOML values; a word may stand without quotes
-  std::optional<Model> model;  ///< --model
-};
-
 /// What a command line gives with --set and --model (empty: none), each key once.
 /// @throws SceneError where a setting would take the place of another one, or --model that of one, unseen.
 Overrides overrides_of_command_line(const std::vector<std::string>& set, const std::string& model = "");
@@ -312,9 +328,12 @@ Overrides overrides_of_command_line(const std::vector<std::string>& set, const s
 /// Whether a command line's settings give this key.
 bool gives_key(const std::vector<std::string>& set, const std::string& path);
 
-/// Reads, resolves and checks a scene. `scene` is a path or the name of a file in the scenes folder.
+/// Reads, resolves and checks a scene. `named` is a path or the name of a file in the scenes folder.
 /// @throws SceneError naming every fault found, never only the first.
-Scene load_scene(const std::string& scene, const Overrides& overrides = {});
+Scene load_scene(const std::string& named, const Overrides& overrides = {});
+
+/// Whether a scene is named by the path of its file, not by its name.
+bool is_path(const std::string& named);
 
 /// As load_scene, of a text held in memory; `path` only names it in messages.
 Scene parse_scene(const std::string& text, const std::filesystem::path& path,

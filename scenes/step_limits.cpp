@@ -23,26 +23,17 @@ double largest_yield_stress(const Scene& scene) {
          scene.thixotropy->flocculation_rate * scene.time.end;
 }
 
-/// Largest viscosity of the scene's fluid: of papanastasiou eta + m tau0, of bi-viscous eta + tau0 / critical
-/// rate.
+/// Largest viscosity that the scene's law can have by the end of a run.
 double largest_viscosity(const Scene& scene) {
-  const Material& material = scene.material;
-  switch (material.model) {
-    case Model::papanastasiou:
-      return material.plastic_viscosity +
-             material.regularisation_time.value_or(0.0) * largest_yield_stress(scene);
-    case Model::bi_viscous:
-      return material.plastic_viscosity +
-             largest_yield_stress(scene) / material.critical_shear_rate.value_or(1.0);
-    default:
-      return material.plastic_viscosity;
-  }
+  laws::FlowCurve curve = scene.material.flow_curve();
+  curve.parameters.yield_stress = largest_yield_stress(scene);
+  return curve.largest_viscosity();
 }
 
 /// dt < density cell^2 / (6 eta_max): past it the capped stress chatters silently instead of blowing up.
 double viscous_limit(const Scene& scene) {
-  const bool is_explicit_fluid = scene.material.model != Model::elasto_viscoplastic &&
-                                 scene.mpm.fluid_update == FluidUpdate::explicit_update;
+  const bool is_explicit_fluid =
+      !laws::can_rest(scene.material.model) && scene.mpm.fluid_update == FluidUpdate::explicit_update;
   const double viscosity = largest_viscosity(scene);
   if (!is_explicit_fluid || viscosity <= 0.0) return std::numeric_limits<double>::infinity();
   return scene.material.density * scene.mpm.cell * scene.mpm.cell / (6.0 * viscosity);
@@ -155,7 +146,7 @@ double largest_foam_step(const Scene& scene) {
   constexpr double waves_over_cells = 1.5;
   const Material& material = scene.material;
   double step = std::min(scene.output.history_interval, scene.output.profile_interval);
-  if (material.model == Model::elasto_viscoplastic)
+  if (laws::can_rest(material.model))
     return std::min(step, waves_over_cells * smallest_foam_cell(scene) /
                               std::sqrt(material.shear_modulus() / material.density));
   if (material.plastic_viscosity > 0.0)

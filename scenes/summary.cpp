@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/cost.h"
+#include "scenes/plausibility.h"
 #include "scenes/settings.h"
 #include "scenes/step_limits.h"
 #include "scenes/text.h"
@@ -155,6 +156,7 @@ std::string check_json(const Scene& scene) {
   const Cost cost = mpm_cost(scene);
   Json json;
   json["scene"] = scene.name;
+  json["notes"] = plausibility_notes(scene);
   json["settings"] = settings_json(scene);
   json["step_limits"] = {{"acoustic_s", limits.acoustic},
                          {"viscous_s", finite(limits.viscous)},

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace flowrest::scenes {
 
@@ -29,6 +30,25 @@ std::string escaped(const std::string& text) {
 }
 
 std::string quoted(const std::string& text) { return fmt::format("\"{}\"", escaped(text)); }
+
+std::string encoding_fault(std::string_view text) {
+  constexpr std::string_view utf_16_marks[] = {"\xFF\xFE", "\xFE\xFF"}, archive = "PK\x03\x04";
+  const char* const allowed = "allowed: text in UTF-8 (a spreadsheet calls it CSV UTF-8)";
+  for (const auto mark : utf_16_marks)
+    if (text.starts_with(mark)) return fmt::format("is text in UTF-16; {}", allowed);
+  if (text.starts_with(archive))
+    return fmt::format("is an archive, such as a spreadsheet's own file (.xlsx, .ods); {}", allowed);
+  const auto nul = text.find('\0');
+  if (nul == std::string_view::npos) return {};
+  // In UTF-16 without a mark every other byte of plain letters is 0.
+  const bool utf_16 = nul < 2 && std::count(text.begin(), text.end(), '\0') > std::ssize(text) / 4;
+  return fmt::format("{}; {}", utf_16 ? "is text in UTF-16" : "holds bytes that are 0, so it is no text",
+                     allowed);
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "Note: {}\n", note);
+}
 
 std::string toml_string(const std::string& text) {
   std::string string = "\"";

@@ -473,6 +473,18 @@ TEST(WrongScenes, DeepNestingIsRefusedBeforeItCostsTheStack) {
   EXPECT_THAT(complaint("[" + dotted + "a]"), testing::HasSubstr("wrong.toml:1:1: has more than 10000 dots"));
 }
 
+TEST(WrongScenes, ATextInUtf16IsNamedAsSuch) {
+  std::string marked = "\xFF\xFE", unmarked;
+  for (const char c : slump_text) {
+    marked += {c, '\0'};
+    unmarked += {'\0', c};
+  }
+  for (const std::string& text : {marked, unmarked})
+    EXPECT_EQ(complaint(text),
+              "wrong.toml:1:1: is text in UTF-16; allowed: text in UTF-8 (a spreadsheet calls it CSV UTF-8)");
+  EXPECT_THAT(complaint(slump_text + '\0'), testing::HasSubstr("holds bytes that are 0, so it is no text"));
+}
+
 TEST(WrongScenes, ATextOfMoreThanAMegabyteIsRefused) {
   EXPECT_THAT(complaint(slump_text + "# " + std::string(1 << 20, 'x')),
               testing::HasSubstr("wrong.toml:1:1: is 1049320 bytes long; allowed: 1048576"));

@@ -8,8 +8,10 @@
 #include <fstream>
 
 #include "compare/words.h"
+#include "runs/command.h"
 #include "runs/run_directory.h"
 #include "scenes/cost.h"
+#include "scenes/names.h"
 #include "scenes/text.h"
 
 namespace flowrest::studies {
@@ -56,17 +58,11 @@ T named(const Json& json, const char* key) {
   return found->get<T>();
 }
 
-scenes::Kind kind_from(const std::string& name) {
-  for (const auto kind : {scenes::Kind::slump, scenes::Kind::duct})
-    if (scenes::to_string(kind) == name) return kind;
-  throw runs::RunError(fmt::format("the kind of scene '{}' is unknown", name));
-}
-
-scenes::Dimension dimension_from(const std::string& name) {
-  using scenes::Dimension;
-  for (const auto d : {Dimension::axisymmetric, Dimension::plane, Dimension::quarter, Dimension::full})
-    if (scenes::to_string(d) == name) return d;
-  throw runs::RunError(fmt::format("the dimension '{}' is unknown", name));
+template <class Choice>
+Choice choice_from(const std::string& name, const char* what) {
+  if (const auto choice = scenes::choice_named<Choice>(name)) return *choice;
+  throw runs::RunError(fmt::format("the {} '{}' is unknown; allowed: {}", what, name,
+                                   scenes::joined(scenes::all_names<Choice>())));
 }
 
 /// A cell that suits the scene: in a duct a whole number of them lies between the plates.
@@ -97,6 +93,16 @@ std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const s
   return candidates;
 }
 
+/// The command that runs a scene without an accuracy, its cell to be changed.
+std::string with_own_cell(const scenes::Scene& scene) {
+  std::vector<std::string> arguments =
+      runs::scene_arguments(runs::without_setting(scene.request, "mpm.cell"));
+  arguments.insert(arguments.begin(), "mpm");
+  arguments.insert(arguments.end(),
+                   {"--set", fmt::format("mpm.cell={}", scenes::exact_text(scene.mpm.cell))});
+  return runs::command_line(arguments);
+}
+
 [[noreturn]] void nothing_known(const std::vector<Knowledge>& all, const scenes::Scene& scene) {
   std::string known;
   for (const Knowledge& k : all)
@@ -105,9 +111,9 @@ std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const s
   throw scenes::SceneError(fmt::format(
       "{}: no study has measured what accuracy a {} ({}, {}) costs, so no settings can be chosen for one; "
       "known: "
-      "{}. Make one with `flowrest study STUDY --keep`, or give the cell yourself",
+      "{}. Write a study of such scenes and run it with --keep, or give the cell yourself: `{}`",
       scene.path.string(), scenes::to_string(scene.kind), scenes::to_string(scene.geometry.dimension),
-      scenes::to_string(scene.material.model), known.empty() ? "nothing" : known));
+      scenes::to_string(scene.material.model), known.empty() ? "nothing" : known, with_own_cell(scene)));
 }
 
 scenes::Scene with_settings(const scenes::Scene& scene, const std::vector<std::string>& set) {
@@ -161,8 +167,8 @@ Knowledge parse_knowledge(const Json& json) {
   k.cut = named<std::string>(json, "cut");
   k.scene = named<std::string>(json, "scene");
   k.quantity = named<std::string>(json, "quantity");
-  k.kind = kind_from(named<std::string>(json, "kind"));
-  k.dimension = dimension_from(named<std::string>(json, "dimension"));
+  k.kind = choice_from<scenes::Kind>(named<std::string>(json, "kind"), "kind of scene");
+  k.dimension = choice_from<scenes::Dimension>(named<std::string>(json, "dimension"), "dimension");
   k.length = named<double>(json, "length_m");
   k.uncertainty = named<double>(json, "relative_uncertainty");
   k.reference = named<std::string>(json, "reference");
@@ -239,6 +245,7 @@ Choice choose(const std::vector<Knowledge>& all, const scenes::Scene& scene, dou
   const Knowledge& k = *cheapest->knowledge;
   const KnownPoint& p = *cheapest->point;
   Choice choice;
+  choice.quantity = k.quantity;
   choice.cell = suited_cell(scene, p.cell * length_of(scene) / k.length);
   choice.twin_cell = suited_cell(scene, twin_is_coarser * choice.cell);
   choice.set = settings_with(p, choice.cell);

@@ -47,6 +47,7 @@ Knowledge parse_knowledge(const nlohmann::ordered_json&);
 struct Choice {
   std::vector<std::string> set;        ///< for --set
   std::vector<std::string> twin_set;   ///< of the coarser twin
+  std::string quantity;                ///< by which the twin is held against the run
   double cell = 0.0, twin_cell = 0.0;  ///< m
   double expected_error = 0.0;         ///< relative, with the reference's uncertainty
   double expected_cpu = 0.0;           ///< s, run and twin

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "studies/quantities.h"
+
 using namespace flowrest;
 using namespace flowrest::studies;
 using testing::HasSubstr;
@@ -89,4 +91,45 @@ TEST(Accuracy, WhatIsStoredCanBeRead) {
     EXPECT_GT(k.length, 0.0);
     EXPECT_FALSE(k.made_by.empty());
   }
+}
+
+TEST(Accuracy, EveryKindOfSceneMayHaveItsKnowledgeAndIsHeldByTheQuantityThatIsKnown) {
+  const std::vector<std::pair<std::string, std::string>> kept = {
+      {"mix-a-lbox-sf0", "front_mm"},
+      {"mix-a-vfunnel-sf0", "light_s"},
+      {"dam-break", "arrival_s"},
+      {"poiseuille-step-down", "plug_velocity_m_s"},
+      {"roussel-slump", "spread_mm"}};
+  for (const auto& [name, quantity] : kept) {
+    const auto scene = scenes::load_scene(name);
+    EXPECT_EQ(complaint_about(quantity), "") << quantity;
+    const Knowledge read = parse_knowledge({{"study", "made-up"},
+                                            {"cut", ""},
+                                            {"scene", name},
+                                            {"quantity", quantity},
+                                            {"kind", scenes::to_string(scene.kind)},
+                                            {"dimension", scenes::to_string(scene.geometry.dimension)},
+                                            {"length_m", scene.body_height()},
+                                            {"relative_uncertainty", 0.001},
+                                            {"reference", "made up"},
+                                            {"made_by", "nobody"},
+                                            {"made", "never"},
+                                            {"points",
+                                             {{{"model", scenes::to_string(scene.material.model)},
+                                               {"settings", nlohmann::ordered_json::object()},
+                                               {"cell_m", scene.mpm.cell},
+                                               {"relative_error", 0.01},
+                                               {"cpu_s", 1.0},
+                                               {"expected_cpu_s", 1.0}}}}});
+    const Choice choice = choose({read}, scene, 0.02);
+    EXPECT_EQ(choice.quantity, quantity) << name;
+    EXPECT_FALSE(choice.set.empty()) << name;
+  }
+}
+
+TEST(Accuracy, WithoutKnowledgeTheCommandThatNeedsNoneCarriesEverySetting) {
+  const auto box = scenes::load_scene("mix-a-lbox-sf0", {{"mpm.cell=0.02", "title=a b"}, {}});
+  EXPECT_THAT(refusal(box, 0.02, {made_up()}),
+              HasSubstr("give the cell yourself: `flowrest mpm mix-a-lbox-sf0 --set 'title=a b' "
+                        "--set mpm.cell=0.02`"));
 }

@@ -9,6 +9,7 @@
 #include "runs/folder_lock.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "scenes/text.h"
 #include "studies/accuracy.h"
 #include "studies/results.h"
 #include "studies/validation/validation.h"
@@ -45,7 +46,7 @@ void print_list(const std::vector<Point>& points) {
 }
 
 void print_results(const Results& results, const Folder& folder, bool json) {
-  for (const std::string& note : results.notes) fmt::print("Note: {}\n", note);
+  scenes::print_notes(results.notes);
   for (const std::string& finding : results.findings) fmt::print("{}\n", finding);
   const fs::path page = fs::absolute(folder.root / "index.html").lexically_normal();
   fmt::print("\nThe study: {}\n", page.string());

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "compare/measures/gauges.h"
 #include "compare/measures/series.h"
 #include "scenes/text.h"
 
@@ -14,13 +15,19 @@ namespace flowrest::studies {
 namespace {
 
 /// Columns of histories that say something of the flow.
-const std::vector<std::string> columns = {"spread_mm",          "spread_1p5_mm",      "spread_6_mm",
-                                          "spread_mass_995_mm", "height_mm",          "plug_velocity_m_s",
-                                          "mean_velocity_m_s",  "volume_m3",          "kinetic_energy_J",
-                                          "potential_energy_J", "elastic_energy_J",   "dissipated_energy_J",
-                                          "numerical_energy_J", "shear_rate_p99_1_s", "flocculation_mean",
-                                          "front_mm",           "discharged_fraction"};
-const std::vector<std::string> others = {"rest_time_s", "profile_l1", "profile_l2"};
+const std::vector<std::string> columns = {
+    "spread_mm",          "spread_1p5_mm",      "spread_6_mm",       "spread_mass_995_mm",
+    "height_mm",          "plug_velocity_m_s",  "mean_velocity_m_s", "volume_m3",
+    "kinetic_energy_J",   "potential_energy_J", "elastic_energy_J",  "dissipated_energy_J",
+    "numerical_energy_J", "shear_rate_p99_1_s", "flocculation_mean", "front_mm",
+    "start_height_mm",    "end_height_mm",      "thinnest_sight_mm", "discharged_fraction"};
+/// Moments, which are of the whole run.
+const std::vector<std::string> moments = {"rest_time_s", "arrival_s", "light_s"};
+const std::vector<std::string> differences = {"profile_l1", "profile_l2"};
+
+bool is_moment(const std::string& base) {
+  return std::find(moments.begin(), moments.end(), base) != moments.end();
+}
 
 struct Name {
   std::string base;
@@ -43,7 +50,7 @@ Name parsed(const std::string& quantity) {
 
 std::vector<std::string> every_name() {
   std::vector<std::string> names = columns;
-  names.insert(names.end(), others.begin(), others.end());
+  for (const auto* more : {&moments, &differences}) names.insert(names.end(), more->begin(), more->end());
   return names;
 }
 
@@ -128,7 +135,7 @@ std::string complaint_about(const std::string& quantity) {
   if (!name.well_formed)
     return fmt::format("{}, whose time is no number of seconds; allowed: such as spread_mm@1.5",
                        scenes::quoted(quantity));
-  if (name.time && name.base == "rest_time_s") return "rest_time_s at a time; allowed: rest_time_s alone";
+  if (name.time && is_moment(name.base)) return fmt::format("{0} at a time; allowed: {0} alone", name.base);
   return {};
 }
 
@@ -149,11 +156,7 @@ std::string unit_of(const std::string& quantity) {
 
 std::optional<double> measure(const runs::Run& run, const std::string& quantity, const runs::Run* reference) {
   const Name name = parsed(quantity);
-  if (name.base == "rest_time_s") {
-    const auto rest = run.info.find("rest_time_s");
-    if (rest == run.info.end() || !rest->is_number()) return std::nullopt;
-    return rest->get<double>();
-  }
+  if (is_moment(name.base)) return compare::read(run, name.base == "rest_time_s" ? "rest_s" : name.base);
   if (is_difference(quantity)) return reference ? of_profile(run, name, *reference) : std::nullopt;
   return of_history(run, name);
 }

@@ -7,8 +7,8 @@
 #include "runs/run_directory.h"
 
 /// What a study measures of a run, by name: a column of its history at the end ("spread_mm") or at a time
-/// ("spread_mm@1.5"), "rest_time_s", or how its profile differs from the reference's ("profile_l1",
-/// "profile_l2", with or without a time).
+/// ("spread_mm@1.5"), a moment ("rest_time_s", "arrival_s", "light_s"), or how its profile differs from the
+/// reference's ("profile_l1", "profile_l2", with or without a time).
 namespace flowrest::studies {
 
 /// What is wrong with the name of a quantity; empty where nothing is.

@@ -520,6 +520,8 @@ Study parse_study(const std::string& text, const fs::path& path) {
   constexpr std::ptrdiff_t most_dots = 10000;  // toml++ puts no bound on the depth of dotted keys
   if (text.size() > scenes::largest_text || std::count(text.begin(), text.end(), '.') > most_dots)
     throw SceneError(start.text() + ": is larger than a study can be");
+  if (const std::string fault = scenes::encoding_fault(text); !fault.empty())
+    throw SceneError(start.text() + ": " + fault);
   try {
     const toml::table document = toml::parse(std::string_view(text));
     Table table(document, "", source, faults);

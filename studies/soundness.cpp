@@ -80,11 +80,11 @@ std::string flocculation_negative(const runs::Run& run) {
   return {};
 }
 
-/// Nothing in a slump moves faster, in the mean over its mass, than what falls from its height.
+/// Nothing that weight alone drives moves faster, in the mean over its mass, than what falls from its height.
 std::string too_fast(const runs::Run& run, const scenes::Scene& scene) {
   const auto *kinetic = column(run, "kinetic_energy_J"), *volume = column(run, "volume_at_rest_m3");
-  if (scene.kind != scenes::Kind::slump || !kinetic || !volume || volume->empty()) return {};
-  const double fall = std::sqrt(2.0 * scene.forces.gravity * scene.slump().cone_height);
+  if (!scene.forces.body_force.empty() || !kinetic || !volume || volume->empty()) return {};
+  const double fall = scenes::free_fall_speed(scene);
   for (std::size_t i = 0; i < kinetic->size(); ++i) {
     const double speed = std::sqrt(2.0 * (*kinetic)[i] / (scene.material.density * (*volume)[i]));
     if (speed > speed_slack * fall + 1e-12)

@@ -184,3 +184,33 @@ TEST(Quantities, KnowTheirUnitsAndTheirTimes) {
   EXPECT_THAT(complaint_about("spread_mm@soon"), HasSubstr("no number of seconds"));
   EXPECT_THAT(complaint_about("rest_time_s@3"), HasSubstr("rest_time_s alone"));
 }
+
+TEST(Study, AByteOrderMarkAndCarriageReturnsChangeNothingAndUtf16IsNamed) {
+  std::string windows = "\xEF\xBB\xBF";
+  for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(parse_study(windows, "cells.toml").quantities, parse_study(text, "cells.toml").quantities);
+  std::string utf_16 = "\xFF\xFE";
+  for (const char c : text) utf_16 += {c, '\0'};
+  try {
+    parse_study(utf_16, "cells.toml");
+    FAIL() << "it was taken";
+  } catch (const scenes::SceneError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cells.toml:1:1: is text in UTF-16; allowed: text in UTF-8"));
+  }
+}
+
+TEST(Quantities, MomentsOfVesselsAreThoseThatReportsState) {
+  for (const char* moment : {"arrival_s", "light_s", "rest_time_s"}) {
+    EXPECT_EQ(complaint_about(moment), "");
+    EXPECT_EQ(unit_of(moment), "s");
+    EXPECT_THAT(complaint_about(std::string(moment) + "@1"), HasSubstr(std::string(moment) + " at a time"));
+  }
+  runs::Run run;
+  run.info = {{"status", "end-time"}, {"settings", {{"geometry", {{"channel_length", 0.6}}}}}};
+  run.history.names = {"time_s", "front_mm", "thinnest_sight_mm", "end_height_mm"};
+  run.history.columns = {{0.0, 1.0, 2.0}, {0.0, 500.0, 700.0}, {60.0, 5.0, 1.0}, {0.0, 0.0, 40.0}};
+  EXPECT_NEAR(*measure(run, "arrival_s"), 1.5, 1e-6);
+  EXPECT_NEAR(*measure(run, "light_s"), 1.5, 1e-6);
+  EXPECT_EQ(measure(run, "end_height_mm"), 40.0);
+  EXPECT_FALSE(measure(run, "rest_time_s"));
+}

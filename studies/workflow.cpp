@@ -11,6 +11,8 @@
 #include <thread>
 
 #include "runs/console.h"
+#include "runs/cores.h"
+#include "runs/folder.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
@@ -72,8 +74,7 @@ std::size_t ended(const Folder& folder, const std::vector<const Point*>& runs) {
 }
 
 std::vector<std::string> snakemake_arguments(const Folder& folder, const WorkflowOptions& options) {
-  const int cores =
-      options.cores > 0 ? options.cores : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int cores = options.cores > 0 ? options.cores : runs::cores();
   // The lock of the folder is ours and dies with its holders; Snakemake's would outlive a kill.
   std::vector<std::string> arguments = {"--snakefile",
                                         (folder.root / "Snakefile").string(),

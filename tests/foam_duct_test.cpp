@@ -84,8 +84,7 @@ TEST_F(FoamDuct, BelowYieldARegularisedFluidCreepsAsFastAsItsLawSays) {
     const auto result =
         run("papanastasiou", {"forces.body_force=[[0.0, 360.0]]", "time.end=3", "foam.cell=0.02",
                               fmt::format("material.regularisation_time={}", m)});
-    using compare::exact::RegularisedFluid;
-    const RegularisedFluid fluid{RegularisedFluid::Law::papanastasiou, 100.0, viscosity, m};
+    const auto fluid = compare::exact::regularised_fluid(scenes::Model::papanastasiou, 100.0, viscosity, m);
     const double expected = compare::exact::duct_creep(fluid, height, 360.0),
                  creep = result.history.at("plug_velocity_m_s").back();
     std::printf("    m = %g s: creeps at %.4g m/s, its law says %.4g\n", m, creep, expected);
@@ -122,8 +121,7 @@ TEST_F(FoamDuct, SteppedDownBelowYieldTheElastoViscoplasticMaterialStopsInTimeAn
 /// Stepped down it creeps as from rest: what the fluid has been through does not matter.
 TEST_F(FoamDuct, SteppedDownBelowYieldAFluidCreepsOn) {
   const auto result = run("papanastasiou", {"time.end=19", "foam.cell=0.02"});
-  using compare::exact::RegularisedFluid;
-  const RegularisedFluid fluid{RegularisedFluid::Law::papanastasiou, 100.0, viscosity, 10.0};
+  const auto fluid = compare::exact::regularised_fluid(scenes::Model::papanastasiou, 100.0, viscosity, 10.0);
   const double expected = compare::exact::duct_creep(fluid, height, 360.0);
   EXPECT_NEAR(result.history.at("plug_velocity_m_s").back(), expected, 0.05 * expected);
   EXPECT_EQ(result.info["verdict"], "sound");

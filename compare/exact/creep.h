@@ -1,23 +1,18 @@
 #pragma once
 
+#include "laws/law.h"
+
 /// How fast a regularised Bingham fluid goes on creeping where the exact material has stopped.
 namespace flowrest::compare::exact {
 
 /// A fluid that imitates a yield stress by a large viscosity at small shear rates.
-struct RegularisedFluid {
-  enum class Law { papanastasiou, bi_viscous };
-  Law law = Law::papanastasiou;
-  double yield_stress = 0.0;         ///< Pa
-  double plastic_viscosity = 0.0;    ///< Pa s
-  double regularisation_time = 0.0;  ///< m, s; of the bi-viscous law the inverse of its critical shear rate
+using RegularisedFluid = laws::FlowCurve;
 
-  double largest_viscosity() const { return plastic_viscosity + regularisation_time * yield_stress; }
-  /// tau = eta g + tau0 (1 - exp(-m g)), or min(eta0 g, tau0 + eta g) with eta0 = eta + m tau0; g = sqrt(2
-  /// D:D).
-  double stress(double shear_rate) const;
-  /// The inverse of stress().
-  double shear_rate(double stress) const;
-};
+/// `time` is m of Papanastasiou, s; of the bi-viscous law the inverse of its critical shear rate.
+inline RegularisedFluid regularised_fluid(laws::Law law, double yield_stress, double plastic_viscosity,
+                                          double time) {
+  return {law, {yield_stress, plastic_viscosity, time, 1.0 / time}};
+}
 
 /// Depth-mean velocity of a film of `depth` whose base carries `base_stress`: (depth/base_stress^2) int tau g
 /// dtau. On a bi-viscous fluid at the yield stress it is tau0 depth/(3 eta0). m/s

@@ -30,30 +30,22 @@ void solve_tridiagonal(std::vector<double>& lower, std::vector<double>& middle,
   for (std::size_t i = n - 1; i-- > 0;) right[i] = (right[i] - upper[i] * right[i + 1]) / middle[i];
 }
 
-/// d stress / d rate, Pa s
-double tangent(const RegularisedFluid& fluid, double rate) {
-  const double m = fluid.regularisation_time;
-  if (fluid.law == RegularisedFluid::Law::bi_viscous)
-    return rate < 1.0 / m ? fluid.largest_viscosity() : fluid.plastic_viscosity;
-  return fluid.plastic_viscosity + m * fluid.yield_stress * std::exp(-m * rate);
-}
-
 /// int tau g dtau along the flow curve up to a shear rate, in pieces between which the law changes its
 /// nature, each by Gauss' rule with four points. Pa2/s
 double stress_rate_integral(const RegularisedFluid& fluid, double last_rate) {
   static constexpr double point[] = {0.8611363115940526, 0.3399810435848563};
   static constexpr double weight[] = {0.3478548451374538, 0.6521451548625461};
-  static constexpr double ends[] = {0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0};  // of rate times m
+  static constexpr double ends[] = {0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 40.0};  // of the rate at which it bends
   double sum = 0.0, begin = 0.0;
   const auto add_piece = [&](double end) {
     for (int k = 0; k < 4; ++k) {
       const double rate = 0.5 * (begin + end) + (k % 2 ? 0.5 : -0.5) * (end - begin) * point[k / 2];
-      sum += 0.5 * (end - begin) * weight[k / 2] * fluid.stress(rate) * rate * tangent(fluid, rate);
+      sum += 0.5 * (end - begin) * weight[k / 2] * fluid.stress(rate) * rate * fluid.tangent(rate);
     }
     begin = end;
   };
   for (const double end : ends) {
-    const double rate = end / fluid.regularisation_time;
+    const double rate = end * fluid.yielding_rate();
     if (rate >= last_rate) break;
     add_piece(rate);
   }
@@ -82,9 +74,9 @@ double film_flux(const RegularisedFluid& fluid, double density, double gravity, 
   if (!(depth > 0.0) || slope == 0.0) return 0.0;
   const double base_stress = density * gravity * depth * std::abs(slope);
   // So little that the fluid is Newtonian there, and that its square would underflow.
-  if (base_stress < 1e-6 * fluid.yield_stress)
+  if (base_stress < 1e-6 * fluid.parameters.yield_stress)
     return std::copysign(base_stress * depth * depth / (3.0 * fluid.largest_viscosity()), slope);
-  const double integral = stress_rate_integral(fluid, fluid.shear_rate(base_stress));
+  const double integral = stress_rate_integral(fluid, fluid.rate(base_stress));
   return std::copysign(depth * depth / (base_stress * base_stress) * integral, slope);
 }
 

@@ -20,8 +20,9 @@ SpreadingFilm bingham_film(int rings = 225) {
   return bingham_film(roussel, gravity, 0.1, volume, 0.45, rings, false);
 }
 
-SpreadingFilm regularised_film(RegularisedFluid::Law law, double time, int rings = 90) {
-  const RegularisedFluid fluid{law, roussel.yield_stress, roussel.plastic_viscosity, time};
+SpreadingFilm regularised_film(laws::Law law, double time, int rings = 90) {
+  const RegularisedFluid fluid =
+      regularised_fluid(law, roussel.yield_stress, roussel.plastic_viscosity, time);
   return {[fluid](double depth, double slope) {
             return film_flux(fluid, roussel.density, gravity, depth, slope);
           },
@@ -34,7 +35,7 @@ double spread_at(SpreadingFilm& film, double time) {
 }
 
 TEST(Film, AStiffRegularisedFluidFlowsAsBinghamDoes) {
-  const RegularisedFluid fluid{RegularisedFluid::Law::bi_viscous, 50.0, 50.0, 1e7};
+  const RegularisedFluid fluid = regularised_fluid(laws::Law::bi_viscous, 50.0, 50.0, 1e7);
   for (const double slope : {0.05, 0.2, -0.4}) {
     const double exact = film_flux(roussel, gravity, 0.05, slope);
     EXPECT_NEAR(film_flux(fluid, 2300.0, gravity, 0.05, slope), exact, 1e-5 * std::abs(exact) + 1e-12)
@@ -44,9 +45,9 @@ TEST(Film, AStiffRegularisedFluidFlowsAsBinghamDoes) {
 }
 
 TEST(Film, ARegularisedFluidsFluxIsThatOfItsMeanVelocity) {
-  for (const auto law : {RegularisedFluid::Law::papanastasiou, RegularisedFluid::Law::bi_viscous})
+  for (const auto law : {laws::Law::papanastasiou, laws::Law::bi_viscous})
     for (const double time : {10.0, 1000.0}) {
-      const RegularisedFluid fluid{law, 50.0, 50.0, time};
+      const RegularisedFluid fluid = regularised_fluid(law, 50.0, 50.0, time);
       for (const double slope : {0.01, 0.044, 0.0444, 0.06, 0.5}) {
         const double exact = 0.05 * film_velocity(fluid, 0.05, 2300.0 * gravity * 0.05 * slope);
         EXPECT_NEAR(film_flux(fluid, 2300.0, gravity, 0.05, slope), exact, 1e-4 * exact)
@@ -125,8 +126,8 @@ TEST(Film, ConvergesWithItsRings) {
 
 TEST(Film, ARegularisedOnePassesTheArrestedShapeTheSoonerTheSofterItIs) {
   auto exact = bingham_film(90);
-  auto soft = regularised_film(RegularisedFluid::Law::bi_viscous, 10.0);
-  auto stiff = regularised_film(RegularisedFluid::Law::bi_viscous, 1000.0);
+  auto soft = regularised_film(laws::Law::bi_viscous, 10.0);
+  auto stiff = regularised_film(laws::Law::bi_viscous, 1000.0);
   const double at_rest = spread_at(exact, 30.0);
   EXPECT_NEAR(spread_at(stiff, 30.0), at_rest, 0.002);
   EXPECT_GT(spread_at(soft, 30.0), at_rest + 0.015);

@@ -8,6 +8,7 @@
 #include "compare/exact/creep.h"
 
 using namespace flowrest::compare::exact;
+using flowrest::laws::Law;
 
 namespace {
 
@@ -125,16 +126,16 @@ TEST(DuctFlow, StoppingTimeBound) {
 }
 
 TEST(Creep, TheFlowCurveInverts) {
-  for (const auto law : {RegularisedFluid::Law::papanastasiou, RegularisedFluid::Law::bi_viscous})
+  for (const auto law : {Law::papanastasiou, Law::bi_viscous})
     for (const double m : {0.0, 10.0, 1e4})
       for (const double stress : {1e-6, 25.0, 50.0, 50.1, 500.0}) {
-        const RegularisedFluid fluid{law, 50.0, 50.0, m};
-        EXPECT_NEAR(fluid.stress(fluid.shear_rate(stress)), stress, 1e-10 * stress) << "m " << m;
+        const RegularisedFluid fluid = regularised_fluid(law, 50.0, 50.0, m);
+        EXPECT_NEAR(fluid.stress(fluid.rate(stress)), stress, 1e-10 * stress) << "m " << m;
       }
 }
 
 TEST(Creep, BiViscousFilmIsClosed) {
-  const RegularisedFluid fluid{RegularisedFluid::Law::bi_viscous, 50.0, 50.0, 100.0};
+  const RegularisedFluid fluid = regularised_fluid(Law::bi_viscous, 50.0, 50.0, 100.0);
   EXPECT_NEAR(film_velocity(fluid, 0.026, 50.0), 50.0 * 0.026 / (3.0 * 5050.0), 1e-12);
   EXPECT_EQ(film_velocity(fluid, 0.026, 0.0), 0.0);
 }
@@ -143,7 +144,7 @@ TEST(Creep, OfTheArrestedRousselSlump) {
   const ArrestedSlump slump = leading_order_slump(concrete(50.0), 9.81, cone_volume);
   const double depth = slump.depth(0.5 * slump.radius);
   const auto velocity = [&](double m) {
-    return film_velocity({RegularisedFluid::Law::papanastasiou, 50.0, 50.0, m}, depth, 50.0);
+    return film_velocity(regularised_fluid(Law::papanastasiou, 50.0, 50.0, m), depth, 50.0);
   };
   EXPECT_NEAR(velocity(10.0), 1.2e-3, 5e-5);
   EXPECT_NEAR(velocity(1e4), 1.9e-6, 5e-8);
@@ -152,7 +153,7 @@ TEST(Creep, OfTheArrestedRousselSlump) {
 }
 
 TEST(Creep, OfASpreadSlowsPastTheArrestedRadius) {
-  const RegularisedFluid fluid{RegularisedFluid::Law::bi_viscous, 50.0, 50.0, 100.0};
+  const RegularisedFluid fluid = regularised_fluid(Law::bi_viscous, 50.0, 50.0, 100.0);
   const double at_arrest = 4.0 * 50.0 * 0.026 / (3.0 * 5050.0);
   EXPECT_NEAR(spread_creep(fluid, 0.3, 0.026, 0.3), at_arrest, 1e-12);
   EXPECT_EQ(spread_creep(fluid, 0.3, 0.026, 0.28), spread_creep(fluid, 0.3, 0.026, 0.3));
@@ -164,9 +165,11 @@ TEST(Creep, OfTheSteppedDownDuct) {
   const std::pair<double, double> known[] = {
       {10.0, 1.69e-2}, {100.0, 1.84e-3}, {1e3, 1.86e-4}, {1e4, 1.86e-5}};
   for (const auto& [m, velocity] : known)
-    EXPECT_NEAR(duct_creep({RegularisedFluid::Law::papanastasiou, 100.0, 30.0, m}, 0.5, 360.0) / velocity,
-                1.0, 4e-3)
+    EXPECT_NEAR(
+        duct_creep(regularised_fluid(Law::papanastasiou, 100.0, 30.0, m), 0.5, 360.0) / velocity, 1.0,
+        4e-3)
         << "m " << m;
   // A Newtonian duct: F H^2/(8 eta).
-  EXPECT_NEAR(duct_creep({RegularisedFluid::Law::papanastasiou, 0.0, 30.0, 0.0}, 0.5, 360.0), 0.375, 1e-9);
+  EXPECT_NEAR(duct_creep(regularised_fluid(Law::papanastasiou, 0.0, 30.0, 0.0), 0.5, 360.0), 0.375,
+              1e-9);
 }

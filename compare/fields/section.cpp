@@ -8,6 +8,7 @@
 
 #include "compare/fields/states.h"
 #include "compare/run_view.h"
+#include "runs/command.h"
 
 namespace flowrest::compare::fields {
 
@@ -27,12 +28,11 @@ struct Source {
 
 /// How a run that left no states is made again.
 std::string how_to_make(const RunView& view) {
-  const std::string scene = word(view.run.info, "/scene_name");
-  const std::string command =
-      fmt::format("flowrest {} {} --model {}", view.solver, scene.empty() ? "SCENE" : scene, view.model);
   if (view.solver != "mpm" && view.solver != "foam") return "This run left no particles and no case to read.";
-  return fmt::format("This run's folder holds no {}. Make it anew: {}",
-                     view.solver == "mpm" ? "particles/particles.hdf.series" : "case/case.foam", command);
+  const auto command = runs::command_to_make(view.run.info, view.solver, view.model);
+  return fmt::format("This run's folder holds no {}. Make it anew{}",
+                     view.solver == "mpm" ? "particles/particles.hdf.series" : "case/case.foam",
+                     command ? ": " + *command : " from its scene.");
 }
 
 std::size_t nearest(const std::vector<double>& times, double time) {

@@ -33,21 +33,19 @@ std::vector<std::pair<double, double>> body_force(const RunView& view) {
 
 /// The regularised fluid a run computed, where it is one and says enough.
 std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
-  const auto yield_stress = setting(view, "/material/yield_stress");
-  const auto viscosity = setting(view, "/material/plastic_viscosity");
-  auto time = setting(view, "/material/regularisation_time");
-  exact::RegularisedFluid fluid;
-  if (view.model == "bi-viscous") {
-    fluid.law = exact::RegularisedFluid::Law::bi_viscous;
-    if (const auto rate = setting(view, "/material/critical_shear_rate"); rate && *rate > 0.0)
-      time = 1.0 / *rate;
-  } else if (view.model != "papanastasiou") {
-    return std::nullopt;
+  const auto law = laws::law_named(view.model);
+  if (!law || !laws::creeps(*law)) return std::nullopt;
+  exact::RegularisedFluid fluid{*law, {}};
+  for (const laws::Parameter parameter : laws::every_parameter) {
+    if (!laws::needs(*law, parameter)) continue;
+    auto value = setting(view, fmt::format("/material/{}", laws::key_of(parameter)));
+    if (parameter == laws::Parameter::critical_shear_rate && !(value && *value > 0.0)) {
+      const auto time = setting(view, "/material/regularisation_time");
+      value = time ? std::optional(1.0 / *time) : std::nullopt;
+    }
+    if (!value) return std::nullopt;
+    fluid.parameters.*laws::member_of<double>(parameter) = *value;
   }
-  if (!yield_stress || !viscosity || !time) return std::nullopt;
-  fluid.yield_stress = *yield_stress;
-  fluid.plastic_viscosity = *viscosity;
-  fluid.regularisation_time = *time;
   return fluid;
 }
 
@@ -83,7 +81,7 @@ std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
   if (kind == scenes::Kind::duct) {
     const auto height = setting(view, "/geometry/height");
     const auto stages = body_force(view);
-    if (!height || stages.empty() || stages.back().second * *height > 2.0 * fluid->yield_stress)
+    if (!height || stages.empty() || stages.back().second * *height > 2.0 * fluid->parameters.yield_stress)
       return std::nullopt;
     return exact::duct_creep(*fluid, *height, stages.back().second);
   }
@@ -157,7 +155,7 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
   const RunView* best = nullptr;
   int best_score = -1;
   for (const RunView& other : comparison.runs) {
-    if (other.model != "elasto-viscoplastic" || other.exact || other.gauge.empty() || other.unread ||
+    if (!other.law || !laws::can_rest(*other.law) || other.exact || other.gauge.empty() || other.unread ||
         !other.trouble.empty())
       continue;
     // A front in a box that still runs is no measure of rest.

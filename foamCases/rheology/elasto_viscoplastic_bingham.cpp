@@ -81,8 +81,7 @@ elastoViscoplasticBingham::elastoViscoplasticBingham(
   if (const dictionary* thixotropy = coeffDict_.findDict("thixotropy")) {
     flocculation_ = std::make_unique<flowrest::rheology::Flocculation>(
         phase_, *thixotropy, dimensionedScalar("yieldStress", dimPressure, law_.yield_stress));
-    law_.flocculation_growth = flocculation_->growth().value();
-    law_.deflocculation = flocculation_->deflocculation();
+    structure_ = flocculation_->structure();
   }
 }
 
@@ -131,7 +130,8 @@ elastoViscoplasticBingham::Returned elastoViscoplasticBingham::relaxed(const sym
   const scalar dt = runTime_.deltaTValue(), shear = shear_modulus_.value() * dt;
   const symmTensor trial = carried + 2.0 * shear * dev(symm(gradient));  // Yu et al. 2026, Eq. 37
   const scalar tau = std::sqrt(0.5) * mag(trial);
-  const auto back = flowrest::rheology::relax(law_, tau, shear, dt, flocculation);
+  const auto back =
+      flowrest::laws::ElastoViscoplastic::relax<scalar>(law_, structure_, {tau, shear}, dt, flocculation);
   const scalar kept = tau > VSMALL ? back.stress / tau : 1.0;
   return {kept * trial, back.rate, kept * shear, back.flocculation};
 }

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "foamCases/rheology/flocculation.h"
-#include "foamCases/rheology/law.h"
+#include "laws/elasto_viscoplastic.h"
 #include "turbulentTransportModel.H"
 
 namespace Foam {
@@ -80,7 +80,8 @@ class elastoViscoplasticBingham : public incompressible::laminarModel {
   flowrest::rheology::PhaseRules rules_;
   bool harmonic_faces_;
   dimensionedScalar shear_modulus_;
-  flowrest::rheology::ElastoViscoplastic law_;
+  flowrest::laws::Parameters<scalar> law_;
+  flowrest::laws::Structure<scalar> structure_;
   std::unique_ptr<flowrest::rheology::Flocculation> flocculation_;
   volSymmTensorField stress_;  ///< after the last completed step
   volScalarField plastic_rate_;

@@ -50,8 +50,8 @@ template void carry_with_concrete(const ConcretePhase&, const volSymmTensorField
 Flocculation::Flocculation(const ConcretePhase& phase, const dictionary& dict,
                            const dimensionedScalar& yield_stress)
     : phase_(phase),
-      growth_(dimensionedScalar("flocculationRate", dimPressure / dimTime, dict) / yield_stress),
-      deflocculation_(dict.get<scalar>("deflocculationCoefficient")),
+      structure_{(dimensionedScalar("flocculationRate", dimPressure / dimTime, dict) / yield_stress).value(),
+                 dict.get<scalar>("deflocculationCoefficient")},
       field_(IOobject("flocculation", phase.mesh().time().timeName(), phase.mesh(), IOobject::READ_IF_PRESENT,
                       IOobject::AUTO_WRITE),
              phase.mesh(), dimensionedScalar("initialFlocculation", dimless, dict),
@@ -70,8 +70,9 @@ void Flocculation::advance(const volScalarField& rate) {
   const Time& time = phase_.mesh().time();
   if (time.timeIndex() <= time.startTimeIndex()) return;
   carry();
-  // Yu et al. 2026, Eq. 12, implicit in breakdown.
-  field_ = (field_ + time.deltaT() * growth_) / (1.0 + time.deltaT() * deflocculation_ * rate);
+  const scalar step = time.deltaTValue();
+  auto& cells = field_.primitiveFieldRef();
+  forAll(cells, i) cells[i] = structure_.stepped(cells[i], rate.primitiveField()[i], step);
   field_.correctBoundaryConditions();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "foamCases/rheology/concrete_phase.h"
+#include "laws/structure.h"
 
 namespace flowrest::rheology {
 
@@ -15,8 +16,7 @@ class Flocculation {
 
   const Foam::volScalarField& field() const { return field_; }
   Foam::volScalarField& field() { return field_; }
-  const Foam::dimensionedScalar& growth() const { return growth_; }  ///< A_thix / tau0, 1/s
-  Foam::scalar deflocculation() const { return deflocculation_; }    ///< alpha
+  const laws::Structure<Foam::scalar>& structure() const { return structure_; }
 
   /// lambda carried to the new time without growth or breakdown. Starts from the old time however often it is
   /// called in a step; before the first step it changes nothing.
@@ -26,8 +26,7 @@ class Flocculation {
 
  private:
   const ConcretePhase& phase_;
-  Foam::dimensionedScalar growth_;
-  Foam::scalar deflocculation_;
+  laws::Structure<Foam::scalar> structure_;
   Foam::volScalarField field_;
 };
 

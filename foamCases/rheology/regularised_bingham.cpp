@@ -1,7 +1,8 @@
 #include "foamCases/rheology/regularised_bingham.h"
 
 #include "addToRunTimeSelectionTable.H"
-#include "foamCases/rheology/law.h"
+#include "laws/bi_viscous.h"
+#include "laws/papanastasiou.h"
 
 namespace Foam {
 namespace viscosityModels {
@@ -69,8 +70,8 @@ PapanastasiouBingham::PapanastasiouBingham(const word& name, const dictionary& p
           positive(properties.optionalSubDict(word(typeName) + "Coeffs"), "regularisationTime")) {}
 
 scalar PapanastasiouBingham::viscosity(scalar plastic_viscosity, scalar yield_stress, scalar rate) const {
-  return flowrest::rheology::papanastasiou_viscosity(plastic_viscosity, yield_stress, regularisation_time_,
-                                                     rate);
+  return flowrest::laws::Papanastasiou::viscosity<scalar>(
+      {yield_stress, plastic_viscosity, regularisation_time_, 0.0}, rate);
 }
 
 biViscousBingham::biViscousBingham(const word& name, const dictionary& properties,
@@ -81,8 +82,8 @@ biViscousBingham::biViscousBingham(const word& name, const dictionary& propertie
           positive(properties.optionalSubDict(word(typeName) + "Coeffs"), "criticalShearRate")) {}
 
 scalar biViscousBingham::viscosity(scalar plastic_viscosity, scalar yield_stress, scalar rate) const {
-  return flowrest::rheology::bi_viscous_viscosity(plastic_viscosity, yield_stress, critical_shear_rate_,
-                                                  rate);
+  return flowrest::laws::BiViscous::viscosity<scalar>(
+      {yield_stress, plastic_viscosity, 0.0, critical_shear_rate_}, rate);
 }
 
 NewtonianConcrete::NewtonianConcrete(const word& name, const dictionary& properties,

@@ -162,7 +162,7 @@ struct Stream {
   Stream(double cell, int cells) : length(cells) {
     settings.cell = cell;
     settings.density = 2400.0;
-    settings.law = Law::newtonian;
+    settings.law = flowrest::laws::Law::newtonian;
     settings.flow.yield_stress = 0.0;
     settings.flow.plastic_viscosity = viscosity;
     settings.state = {1e5 / 0.3, 1e5 / 2.9, 7.0};

@@ -148,36 +148,26 @@ void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int 
   }
 }
 
-template <class T, int Dim>
-void relax(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
-  if (step.explicit_fluid) {
-    switch (step.law) {
-      case Law::papanastasiou:
-        return relax_explicit<T, Dim, true, false>(step, s, count);
-      case Law::papanastasiou_thixotropic:
-        return relax_explicit<T, Dim, true, true>(step, s, count);
-      case Law::bi_viscous_thixotropic:
-        return relax_explicit<T, Dim, false, true>(step, s, count);
-      default:
-        return relax_explicit<T, Dim, false, false>(step, s, count);
-    }
-  }
+template <class T, int Dim, bool Thixotropic>
+void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+  if (step.explicit_fluid)
+    return step.law == Law::papanastasiou ? relax_explicit<T, Dim, true, Thixotropic>(step, s, count)
+                                          : relax_explicit<T, Dim, false, Thixotropic>(step, s, count);
   switch (step.law) {
     case Law::elasto_viscoplastic:
-      return relax_closed<T, Dim, ElastoViscoplastic<false>>(step, s, count);
-    case Law::elasto_viscoplastic_thixotropic:
-      return relax_closed<T, Dim, ElastoViscoplastic<true>>(step, s, count);
+      return relax_closed<T, Dim, ElastoViscoplastic<Thixotropic>>(step, s, count);
     case Law::papanastasiou:
-      return relax_papanastasiou<T, Dim, false>(step, s, count);
-    case Law::papanastasiou_thixotropic:
-      return relax_papanastasiou<T, Dim, true>(step, s, count);
+      return relax_papanastasiou<T, Dim, Thixotropic>(step, s, count);
     case Law::bi_viscous:
-      return relax_closed<T, Dim, BiViscous<false>>(step, s, count);
-    case Law::bi_viscous_thixotropic:
-      return relax_closed<T, Dim, BiViscous<true>>(step, s, count);
+      return relax_closed<T, Dim, BiViscous<Thixotropic>>(step, s, count);
     case Law::newtonian:
       return relax_closed<T, Dim, Newtonian>(step, s, count);
   }
+}
+
+template <class T, int Dim>
+void relax(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+  step.thixotropic ? relax_by_law<T, Dim, true>(step, s, count) : relax_by_law<T, Dim, false>(step, s, count);
 }
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

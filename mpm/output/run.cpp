@@ -15,8 +15,11 @@
 #include "mpm/output/gauges.h"
 #include "mpm/output/noise.h"
 #include "mpm/output/snapshot.h"
+#include "mpm/plain/solver.h"
 #include "mpm/sampling/sampling.h"
+#include "mpm/solver/kernels.h"
 #include "mpm/solver/settings.h"
+#include "runs/command.h"
 #include "runs/console.h"
 #include "runs/depth.h"
 #include "runs/earlier_run.h"
@@ -92,8 +95,7 @@ class MpmRun {
         noise_(settings_.dimension, settings_.cell),
         factor_(whole_body_factor(scene)),
         // Before anything is written: seeding may need a program that is missing.
-        solver_(checkpoint ? make_solver(settings_, checkpoint->solver)
-                           : make_solver(settings_, seed_particles(scene))),
+        solver_(checkpoint ? make(checkpoint->solver) : make(seed_particles(scene))),
         writer_(open()),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.last_snapshot : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
@@ -137,6 +139,15 @@ class MpmRun {
       state_.checkpoints += 1.0;
   }
 
+  template <class From>
+  std::unique_ptr<Solver> make(const From& from) const {
+    if (options_.method == Method::fast) return make_solver(settings_, from);
+    if (const std::string what = plain::not_served(settings_); !what.empty())
+      throw scenes::SceneError(
+          fmt::format("{}: --method plain does not compute {}", scene_.path.string(), what));
+    return plain::make_solver(settings_, from);
+  }
+
   RunResult loop() {
     if (state_.histories == 0.0) {
       gauge();
@@ -152,7 +163,7 @@ class MpmRun {
     while (state_.time < end_) {
       if (options_.interrupted())
         return stop(runs::Status::interrupted,
-                    "interrupted; go on with: flowrest mpm --resume " + options_.directory.string());
+                    "interrupted; go on with: " + runs::command_line(resume_arguments()));
       advance();
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= end_) {
         gauge();
@@ -168,6 +179,13 @@ class MpmRun {
   /// Whether the steps since the last row are those of a longer run, too: the last ones before an end between
   /// two rows are shortened to meet it.
   bool is_shared_with_longer_runs() const { return next_row() <= end_ || state_.time == last_row(); }
+
+  std::vector<std::string> resume_arguments() const {
+    std::vector<std::string> arguments = {"mpm", "--resume", runs::path_argument(options_.directory)};
+    if (const std::string& set = options_.instruction_set; !set.empty())
+      arguments.insert(arguments.end(), {"--instruction-set", set});
+    return arguments;
+  }
 
   bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
 
@@ -291,9 +309,7 @@ class MpmRun {
   }
 
   /// A fluid is never at rest, and nothing bounds the growth of what has no yield stress.
-  bool can_rest() const {
-    return scene_.material.model == scenes::Model::elasto_viscoplastic && settings_.flow.yield_stress > 0.0;
-  }
+  bool can_rest() const { return laws::can_rest(settings_.law) && settings_.flow.yield_stress > 0.0; }
 
   /// Bound on the relative growth of the spread still to come.
   double growth_to_come() const {
@@ -352,6 +368,7 @@ class MpmRun {
   void describe() {
     auto& info = writer_.info();
     info["scheme"] = scenes::to_string(scene_.mpm.scheme);
+    if (options_.method == Method::plain) info["method"] = "plain";
     info["precision"] = scenes::to_string(scene_.mpm.precision);
     info["instruction_set"] = solver_->instruction_set();
     info["threads"] = solver_->threads();
@@ -539,6 +556,12 @@ RunResult within_memory(const scenes::Scene& scene, Make make) {
   }
 }
 
+/// What makes a run another one beside its settings.
+nlohmann::ordered_json beside_settings(const RunOptions& options) {
+  if (options.method == Method::plain) return {{"method", "plain"}};
+  return nlohmann::ordered_json::object();
+}
+
 /// What a finished run came to.
 RunResult result_of(const runs::RunFolder& folder) {
   const auto& info = folder.earlier();
@@ -563,7 +586,8 @@ RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOp
 
 RunResult run(const scenes::Scene& scene, const RunOptions& options) {
   const auto replace = options.force ? runs::Replace::anything : runs::Replace::failed;
-  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace), scene, options);
+  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace, beside_settings(options)), scene,
+                options);
 }
 
 RunResult resume(const RunOptions& options, const std::vector<std::string>& set) {
@@ -572,7 +596,8 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
   const scenes::Scene scene =
       runs::scene_to_go_on_with(earlier, set, {"mpm.threads", "output.checkpoint_interval"});
   RunOptions leg = options;
-  leg.instruction_set = instruction_set_of(earlier, options.instruction_set);
+  if (earlier.info.value("method", "") == "plain") leg.method = Method::plain;
+  if (leg.method == Method::fast) leg.instruction_set = instruction_set_of(earlier, options.instruction_set);
   if (const auto checkpoint = read_checkpoint(options.directory)) {
     check_suits(*checkpoint, earlier, scene);
     const RunState& state = checkpoint->run;
@@ -586,7 +611,9 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
         "{}: this run is finished and has no checkpoint.h5 from which it could be prolonged; run it anew, in "
         "another folder",
         options.directory.string()));
-  return run_in(runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished), scene, leg);
+  return run_in(
+      runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished, beside_settings(leg)), scene,
+      leg);
 }
 
 }  // namespace flowrest::mpm

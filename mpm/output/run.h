@@ -10,6 +10,9 @@
 
 namespace flowrest::mpm {
 
+/// What computes the steps: the kernels, or the plain step (plain/step.h).
+enum class Method { fast, plain };
+
 struct RunOptions {
   std::filesystem::path directory;  ///< the run directory
   bool quiet = false;
@@ -17,6 +20,7 @@ struct RunOptions {
   /// Empty: the best this machine runs; where a run is gone on with, the one it had, as others round
   /// otherwise.
   std::string instruction_set;
+  Method method = Method::fast;  ///< of a run that is gone on with: that which it was begun with
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };
 };

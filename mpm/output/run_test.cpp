@@ -31,12 +31,14 @@ std::function<bool()> cut_after(int steps) {
   };
 }
 
-/// What a run says of itself, key by key, but for what it cost, who made it and where it was gone on with.
+/// What a run says of itself, key by key, but for what it cost, who made it, how it was asked for and where
+/// it was gone on with.
 void expect_same_words(nlohmann::ordered_json one, nlohmann::ordered_json other) {
   EXPECT_FALSE(one.contains("resumed_at_s") && other.contains("resumed_at_s"));
   for (auto* info : {&one, &other})
-    for (const char* key : {"resumed_at_s", "provenance", "wall_s", "cpu_s", "particle_steps_per_cpu_s",
-                            "bytes_per_particle", "stage_wall_s", "peak_memory_bytes"})
+    for (const char* key :
+         {"resumed_at_s", "request", "provenance", "wall_s", "cpu_s", "particle_steps_per_cpu_s",
+          "bytes_per_particle", "stage_wall_s", "peak_memory_bytes"})
       info->erase(key);
   for (const auto& [key, value] : one.items()) {
     ASSERT_TRUE(other.contains(key)) << key;

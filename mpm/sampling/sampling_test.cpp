@@ -202,7 +202,7 @@ TEST(Sampling, ConcreteInAContainerCarriesItsWeightFromTheStart) {
   EXPECT_LT(top, 0.595);
   for (const Seed& s : seeds) {
     // Its pressure bears the material above: the weight of what lies over it, to a few parts in a thousand.
-    const double pressure = settings.state.at(s.volume_ratio).pressure;
+    const double pressure = settings.state.pressure(s.volume_ratio);
     double above = 0.0;
     for (const Seed& t : seeds) {
       if (place(t, 0.01)[1] > place(s, 0.01)[1]) above += t.volume;

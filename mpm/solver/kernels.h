@@ -3,29 +3,18 @@
 #include <string>
 #include <vector>
 
+#include "laws/law.h"
 #include "mpm/boundary/contact_points.h"
 #include "mpm/material/equation_of_state.h"
 #include "mpm/material/flow_law.h"
+#include "mpm/solver/choices.h"
 #include "mpm/solver/layout.h"
 
 /// The stages of a step as plain functions over one block, compiled once per instruction set and chosen at
 /// run time.
 namespace flowrest::mpm {
 
-enum class Transfer { quadratic_apic, linear_flip };
-/// How the volumetric part of the strain is averaged (B-bar): through the nodes with the functions' own
-/// weights, over a cell's particles, or taken at the cell's centre.
-enum class Dilatation { smooth, cell_average, centroid };
-enum class StressRate { hughes_winget, jaumann };
-enum class Law {
-  elasto_viscoplastic,
-  elasto_viscoplastic_thixotropic,
-  papanastasiou,
-  papanastasiou_thixotropic,
-  bi_viscous,
-  bi_viscous_thixotropic,
-  newtonian
-};
+using laws::Law;
 
 /// Everything that is the same for all particles of a step.
 template <class T>
@@ -42,6 +31,7 @@ struct StepParameters {
   FlowParameters<T> flow;
   EquationOfState<T> state;
   Law law = Law::elasto_viscoplastic;
+  bool thixotropic = false;
   StressRate stress_rate = StressRate::hughes_winget;
   Dilatation dilatation = Dilatation::smooth;
   bool explicit_fluid = false;

@@ -56,6 +56,8 @@ struct AxisBounds {
   double lower_friction = 0.0, upper_friction = 0.0;  ///< Coulomb's coefficients, of PlaneWall::friction
 };
 
+using CellIndex = std::array<std::int32_t, 3>;  ///< global cell coordinates; the third is 0 in two dimensions
+
 /// A particle that left its cell in this step: by one cell at most along each axis.
 struct Mover {
   std::uint32_t index;  ///< in its block

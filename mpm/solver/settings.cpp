@@ -9,20 +9,6 @@ namespace flowrest::mpm {
 
 namespace {
 
-Law law_of(scenes::Model model, bool thixotropic) {
-  switch (model) {
-    case scenes::Model::elasto_viscoplastic:
-      return thixotropic ? Law::elasto_viscoplastic_thixotropic : Law::elasto_viscoplastic;
-    case scenes::Model::papanastasiou:
-      return thixotropic ? Law::papanastasiou_thixotropic : Law::papanastasiou;
-    case scenes::Model::bi_viscous:
-      return thixotropic ? Law::bi_viscous_thixotropic : Law::bi_viscous;
-    case scenes::Model::newtonian:
-      return Law::newtonian;
-  }
-  return Law::newtonian;
-}
-
 double density_correction(const scenes::Scene& scene) {
   const auto& mpm = scene.mpm;
   if (mpm.scheme == scenes::Scheme::paper) return 0.0;
@@ -77,9 +63,9 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   if (scene.mpm.b_bar)
     s.dilatation = *scene.mpm.b_bar == scenes::BBar::smooth ? Dilatation::smooth : Dilatation::cell_average;
   s.stress_rate = paper ? StressRate::jaumann : StressRate::hughes_winget;
-  s.law = law_of(m.model, scene.thixotropy.has_value());
-  s.explicit_fluid = m.model != scenes::Model::elasto_viscoplastic &&
-                     scene.mpm.fluid_update == scenes::FluidUpdate::explicit_update;
+  s.law = m.model;
+  s.explicit_fluid =
+      !laws::can_rest(m.model) && scene.mpm.fluid_update == scenes::FluidUpdate::explicit_update;
   s.single_precision = scene.mpm.precision == scenes::Precision::single_precision;
   s.cell = cell_size(scene);
   s.density = m.density;
@@ -87,14 +73,12 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
   s.density_correction = density_correction(scene);
   s.free_surface = scene.kind != scenes::Kind::duct;
-  s.flow.yield_stress = m.model == scenes::Model::newtonian ? 0.0 : m.yield_stress;
-  s.flow.plastic_viscosity = m.plastic_viscosity;
-  s.flow.regularisation_time = m.regularisation_time.value_or(0.0);
-  s.flow.critical_shear_rate = m.critical_shear_rate.value_or(1.0);
-  if (scene.thixotropy) {
-    s.flow.flocculation_growth = scene.thixotropy->flocculation_rate / m.yield_stress;
-    s.flow.deflocculation = scene.thixotropy->deflocculation_coefficient;
-  }
+  s.flow = m.flow_curve().parameters;
+  if (!laws::has_yield_stress(m.model)) s.flow.yield_stress = 0.0;
+  s.thixotropic = scene.thixotropy.has_value() && laws::has_yield_stress(m.model);
+  if (s.thixotropic)
+    s.structure = {scene.thixotropy->flocculation_rate / m.yield_stress,
+                   scene.thixotropy->deflocculation_coefficient};
   s.state = {m.bulk_modulus(), m.shear_modulus(), m.equation_of_state_exponent};
   const SceneWalls walls = walls_of(scene, s.cell);
   s.bounds = walls.bounds;

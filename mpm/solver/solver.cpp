@@ -11,6 +11,7 @@
 #include "mpm/boundary/wall_contact.h"
 #include "mpm/material/deviator.h"
 #include "mpm/solver/block_shares.h"
+#include "mpm/solver/kernels.h"
 #include "mpm/solver/particles.h"
 #include "mpm/transfer/shape.h"
 #include "runs/run_directory.h"
@@ -60,7 +61,7 @@ class SolverOf final : public Solver {
       const auto& from = state.arrays.at(static_cast<std::size_t>(k));
       for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[places[p]] = static_cast<T>(from[p]);
     }
-    tile_capacity_ = state.tile_capacity;
+    tile_capacity_ = std::max(state.tile_capacity, usual_tile_capacity);
     if (contact_) contact_->set_forces(state.wall_forces);
     prepare();
     fit_workspaces();
@@ -142,7 +143,7 @@ class SolverOf final : public Solver {
       : settings_(settings),
         count_(count),
         particles_({settings.dimension, settings.transfer == Transfer::quadratic_apic,
-                    settings.transfer == Transfer::linear_flip, is_thixotropic(settings.law)}),
+                    settings.transfer == Transfer::linear_flip, settings.thixotropic}),
         blocks_(settings.dimension, settings.bounds),
         instruction_set_(settings.instruction_set.empty() ? instruction_sets().front()
                                                           : settings.instruction_set),
@@ -158,10 +159,11 @@ class SolverOf final : public Solver {
     p.flow = {
         static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
         static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
-        static_cast<T>(settings.flow.flocculation_growth), static_cast<T>(settings.flow.deflocculation)};
+        static_cast<T>(settings.structure.growth),         static_cast<T>(settings.structure.breakdown)};
     p.state = {static_cast<T>(settings.state.bulk_modulus), static_cast<T>(settings.state.shear_modulus),
                static_cast<T>(settings.state.exponent)};
     p.law = settings.law;
+    p.thixotropic = settings.thixotropic;
     p.stress_rate = settings.stress_rate;
     p.dilatation = settings.b_bar();
     p.explicit_fluid = settings.explicit_fluid;
@@ -211,11 +213,6 @@ class SolverOf final : public Solver {
 
   void mark_walls_nearby() {
     for (BlockView& view : views_) view.walls = nearby_walls_->of_block(view.slot, view.origin);
-  }
-
-  static bool is_thixotropic(Law law) {
-    return law == Law::elasto_viscoplastic_thixotropic || law == Law::papanastasiou_thixotropic ||
-           law == Law::bi_viscous_thixotropic;
   }
 
   /// Bounds of a place within a cell, for particles that are put there.
@@ -426,11 +423,7 @@ class SolverOf final : public Solver {
       moved_ |= s.movers > 0;
     }
     result.largest_speed = std::sqrt(speed_squared);
-    if (faults > 0 || !std::isfinite(result.dissipated))
-      throw runs::NumericsError(
-          fmt::format("{} particles moved further than one cell in one step of {:.3g} s, or are no longer "
-                      "finite: the step is unstable",
-                      faults, step));
+    require_stable(faults, result.dissipated, step);
     return result;
   }
 
@@ -484,6 +477,8 @@ class SolverOf final : public Solver {
     fill_motion(batch, block);
     const ParticleView<T>& v = particles_.view();
     const std::size_t count = batch.count;
+    const EquationOfState<double> state{settings_.state.bulk_modulus, settings_.state.shear_modulus,
+                                        settings_.state.exponent};
     for (auto* a :
          {&batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure, &batch.elastic_energy})
       a->resize(count);
@@ -504,8 +499,8 @@ class SolverOf final : public Solver {
       if (v.lambda) batch.flocculation[i] = static_cast<double>(v.lambda[p]);
       const double shape = settings_.explicit_fluid ? 0.0
                                                     : batch.shear_stress[i] * batch.shear_stress[i] /
-                                                          (2.0 * settings_.state.at(ratio).shear) * ratio;
-      batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + settings_.state.energy(ratio));
+                                                          (2.0 * state.at(ratio).shear) * ratio;
+      batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + state.energy(ratio));
     }
   }
 
@@ -544,6 +539,14 @@ class SolverOf final : public Solver {
 };
 
 }  // namespace
+
+void require_stable(std::uint32_t faults, double dissipated, double step) {
+  if (faults > 0 || !std::isfinite(dissipated))
+    throw runs::NumericsError(
+        fmt::format("{} particles moved further than one cell in one step of {:.3g} s, or are no longer "
+                    "finite: the step is unstable",
+                    faults, step));
+}
 
 std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
   if (settings.single_precision) return std::make_unique<SolverOf<float>>(settings, seeds);

@@ -1,16 +1,18 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "laws/equation_of_state.h"
+#include "laws/law.h"
 #include "mpm/boundary/walls.h"
-#include "mpm/solver/kernels.h"
-#include "mpm/solver/sparse_blocks.h"
-#include "scenes/scene.h"
+#include "mpm/solver/choices.h"
+#include "mpm/solver/layout.h"
 
 namespace flowrest::mpm {
 
@@ -21,7 +23,7 @@ struct SolverSettings {
   Transfer transfer = Transfer::quadratic_apic;
   std::optional<Dilatation> dilatation;  ///< default: smooth if quadratic, the cell average if linear
   StressRate stress_rate = StressRate::hughes_winget;
-  Law law = Law::elasto_viscoplastic;
+  laws::Law law = laws::Law::elasto_viscoplastic;
   bool explicit_fluid = false;
   bool single_precision = false;
   double cell = 0.0;                  ///< m
@@ -30,8 +32,10 @@ struct SolverSettings {
   double density_correction =
       0.0;  ///< share of an overlap of particles, or of a gap at a wall, taken back per unit strain
   bool free_surface = true;  ///< where there is none, as in a duct, every cell is full and stays so
-  FlowParameters<double> flow;
-  EquationOfState<double> state;
+  laws::Parameters<double> flow;
+  bool thixotropic = false;
+  laws::Structure<double> structure;  ///< of what is thixotropic
+  laws::EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
   std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
   int threads = 0;              ///< 0: as many as the particles can feed, up to all cores
@@ -118,6 +122,11 @@ class Solver {
   virtual const std::string& instruction_set() const = 0;
   virtual const StageTimes& stage_times() const = 0;
 };
+
+/// What a solver says of a step after which `faults` particles have moved further than a cell or are no
+/// longer finite. @throws runs::NumericsError where there are any, or the energy dissipated in it is not
+/// finite.
+void require_stable(std::uint32_t faults, double dissipated, double step);
 
 std::unique_ptr<Solver> make_solver(const SolverSettings&, const std::vector<Seed>&);
 std::unique_ptr<Solver> make_solver(const SolverSettings&, const SolverState&);

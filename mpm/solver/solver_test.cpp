@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "mpm/solver/kernels.h"
 #include "mpm/solver/test_bodies.h"
 #include "mpm/transfer/shape.h"
 #include "runs/run_directory.h"

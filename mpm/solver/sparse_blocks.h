@@ -10,8 +10,6 @@
 
 namespace flowrest::mpm {
 
-using CellIndex = std::array<std::int32_t, 3>;  ///< global cell coordinates; the third is 0 in two dimensions
-
 /// The occupied blocks of the background grid, which particles lie in which of their cells, and the
 /// neighbourhoods. Only blocks that hold particles, and those their nodes reach into, exist. The particles of
 /// a block lie side by side in their arrays, in the order of its cells, with some room behind them; where a

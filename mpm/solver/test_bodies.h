@@ -192,7 +192,7 @@ inline std::unique_ptr<Solver> stressed(std::unique_ptr<Solver> solver, const So
     for (double& v : open.deviator(c)) v = random.between(-size, size);
   for (std::size_t p = 0; p < open.size(); ++p) {
     open.volume_ratio()[p] = 1.0 - random.between(-size, size) / s.state.bulk_modulus;
-    open.pressure()[p] = s.state.at(open.volume_ratio()[p]).pressure;
+    open.pressure()[p] = s.state.pressure(open.volume_ratio()[p]);
   }
   return make_solver(s, open.state);
 }

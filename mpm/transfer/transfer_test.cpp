@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 
+#include "mpm/solver/kernels.h"
 #include "mpm/solver/particles.h"
 #include "mpm/solver/test_bodies.h"
 #include "mpm/transfer/shape.h"
@@ -108,7 +109,7 @@ NodeSums sums_by_definition(const SolverSettings& s, const std::vector<Seed>& se
   NodeSums sums;
   for (const auto& seed : seeds) {
     const double volume = seed.volume * s.density * seed.volume_ratio;
-    const double pressure = s.state.at(seed.volume_ratio).pressure;
+    const double pressure = s.state.pressure(seed.volume_ratio);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int k = 0; k < (s.dimension == 3 ? 3 : 1); ++k) {
@@ -256,7 +257,7 @@ TEST(Averages, NodesHoldTheParticlesVolumeAndItsMeanPressure) {
                                                 : averages_by_stages<double>(s, seeds, set);
       ASSERT_EQ(found.size(), expected.size()) << name_of(v) << ", " << set;
       const double unit = v.single_precision ? 1e-6 : 1e-14;
-      const double largest = s.state.at(0.99).pressure;
+      const double largest = s.state.pressure(0.99);
       for (const auto& [node, sums] : expected) {
         const auto& [volume, pressure] = found.at(node);
         // Of a full cell's: what touches a node with a vanishing weight is known as well as the weight.

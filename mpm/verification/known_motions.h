@@ -85,7 +85,8 @@ inline std::unique_ptr<Solver> spinning_block(SolverSettings& s, int edge, int t
 
 /// A periodic block without stress worth speaking of, which keeps the shear it starts with, 1/s.
 inline std::unique_ptr<Solver> sheared_block(SolverSettings& s, double rate, double flocculation) {
-  s.law = Law::elasto_viscoplastic_thixotropic;
+  s.law = laws::Law::elasto_viscoplastic;
+  s.thixotropic = true;
   s.flow.yield_stress = 1e-9;
   s.flow.plastic_viscosity = 1e-9;
   s.bounds[0] = {PlaneWall::none, PlaneWall::none, 0, 8, true};
@@ -97,18 +98,10 @@ inline std::unique_ptr<Solver> sheared_block(SolverSettings& s, double rate, dou
   return with_affine(make_solver(s, seeds), s, {{{0.0, rate * s.cell}, {0.0, 0.0}}});
 }
 
-/// In steady shear lambda tends to A / (tau0 alpha rate), exponentially with alpha rate (Roussel 2006, Eq. 7;
-/// Yu et al. 2026, Eq. 12).
-inline double flocculation_in_shear(const FlowParameters<double>& flow, double rate, double begin,
-                                    double time) {
-  const double steady = flow.flocculation_growth / (flow.deflocculation * rate);
-  return steady + (begin - steady) * std::exp(-flow.deflocculation * rate * time);
-}
-
 /// A column between slip walls, `across` cells wide, after `time` s under gravity.
 inline std::unique_ptr<Solver> settled_column(SolverSettings& s, std::vector<Seed> seeds, int across,
                                               double time, const Step& step = plain_step) {
-  s.law = Law::newtonian;
+  s.law = laws::Law::newtonian;
   s.flow.plastic_viscosity = 500.0;  // stills the column's swing (47 rad/s) at 9 a second
   s.bounds[0] = {PlaneWall::slip, PlaneWall::slip, 0, across, false};
   s.bounds[1].lower = PlaneWall::slip;
@@ -224,7 +217,7 @@ inline DamBreak dam_break(SolverSettings& s, int across, const Step& step = plai
                                                            {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56},
                                                            {2.32, 2.78}, {2.51, 3.00}};
   const double width = across * s.cell, sound = 15.0 * std::sqrt(2.0 * gravity * 2.0 * width);
-  s.law = Law::newtonian;
+  s.law = laws::Law::newtonian;
   s.density = 1000.0;
   s.flow.plastic_viscosity = 1e-3;
   s.state = {s.density * sound * sound, 1e-3 * s.density * sound * sound, 7.0};

@@ -39,8 +39,7 @@ TEST(Rotation, AnElasticBlockKeepsItsEnergyAndAngularMomentumOverTenTurns) {
 
 TEST(SimpleShear, FlocculationBreaksDownAsTheClosedFormSays) {
   SolverSettings s = concrete({2, false, Transfer::quadratic_apic, false});
-  s.flow.flocculation_growth = 0.4;
-  s.flow.deflocculation = 0.2;
+  s.structure = {.growth = 0.4, .breakdown = 0.2};
   const double rate = 5.0, begin = 3.0;
   auto solver = sheared_block(s, rate, begin);
   const double step = 1e-3;
@@ -48,13 +47,13 @@ TEST(SimpleShear, FlocculationBreaksDownAsTheClosedFormSays) {
   for (int i = 1; i <= 1500; ++i) {
     solver->step(step, {0.0, 0.0, 0.0});
     if (i % 100 != 0) continue;
-    const double exact = flocculation_in_shear(s.flow, rate, begin, i * step);
+    const double exact = s.structure.after(begin, rate, i * step);
     solver->visit([&](const ParticleBatch& b) {
       for (const double lambda : b.flocculation) worst = std::max(worst, std::abs(lambda / exact - 1.0));
     });
   }
   std::printf("    largest error of lambda %.2g, from %.3g to %.3g\n", worst, begin,
-              flocculation_in_shear(s.flow, rate, begin, 1500 * step));
+              s.structure.after(begin, rate, 1500 * step));
   EXPECT_LT(worst, 1e-3);
 }
 

@@ -10,6 +10,8 @@
 #include "compare/measures/gauges.h"
 #include "compare/run_view.h"
 #include "compare/words.h"
+#include "runs/command.h"
+#include "scenes/plausibility.h"
 #include "studies/validation/validation.h"
 
 namespace flowrest::studies::validation {
@@ -64,7 +66,7 @@ const Seen* partner(const std::vector<Seen>& all, const Seen& of, bool coarse) {
 /// Why a run that has no such time cannot tell whether it would have had one; empty where it can.
 std::string ended_too_early(const Number& n, const RunView& view) {
   const auto target = n.published.target();
-  const bool fluid_rests = n.published.quantity == "rest_s" && n.model != scenes::Model::elasto_viscoplastic;
+  const bool fluid_rests = n.published.quantity == "rest_s" && !laws::can_rest(n.model);
   if (!target || fluid_rests || compare::reading_named(n.published.quantity).unit != "s") return "";
   const double end = view.run.history.at("time_s").back();
   return end < *target ? fmt::format("the run ended after {:.3g} s", end) : "";
@@ -115,7 +117,7 @@ std::vector<Perpetual> perpetual_of(const std::vector<Seen>& all, const compare:
   std::vector<Perpetual> found;
   for (const Seen& fluid : all) {
     if (fluid.wanted->coarse || !fluid.view || !fluid.view->fluid || fluid.view->gauge.empty() ||
-        fluid.wanted->model == scenes::Model::newtonian)
+        !laws::creeps(fluid.wanted->model))
       continue;
     Perpetual p{.solver = fluid.wanted->solver, .fluid = fluid.wanted->model};
     for (const bool same_solver : {true, false})
@@ -315,12 +317,18 @@ std::vector<std::string> notes_of(const SceneFound& scene, const std::string& le
 
 /// The command that makes a scene's runs.
 std::string command_for(const std::string& scene, const Options& options) {
-  std::string command =
-      fmt::format("flowrest validate {} -o {}", scene, options.folder.lexically_normal().string());
-  if (options.solver) command += " --solver " + to_string(*options.solver);
-  if (options.model) command += " --model " + scenes::to_string(*options.model);
-  for (const std::string& s : options.set) command += " --set " + s;
-  return command;
+  std::vector<std::string> arguments = {"validate",
+                                        scenes::is_path(scene) ? runs::path_argument(scene) : scene, "-o",
+                                        runs::path_argument(options.folder.lexically_normal())};
+  const auto add = [&arguments](const std::string& option, const std::string& value) {
+    arguments.insert(arguments.end(), {option, value});
+  };
+  if (options.solver) add("--solver", to_string(*options.solver));
+  if (options.model) add("--model", scenes::to_string(*options.model));
+  for (const std::string& s : options.set) add("--set", s);
+  if (options.coarsening != Options().coarsening) add("--coarsening", fmt::format("{}", options.coarsening));
+  if (options.any_version) arguments.emplace_back("--any-version");
+  return runs::command_line(arguments);
 }
 
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
@@ -355,7 +363,8 @@ SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const 
   scene.perpetual = perpetual_of(all, gauge);
   scene.flocculation = flocculation_of(all);
   scene.figures = figures_of(wanted, comparison, all, entries);
-  scene.notes = notes_of(scene, wanted.left_out);
+  scene.notes = scenes::plausibility_notes(wanted.scene);
+  for (std::string& note : notes_of(scene, wanted.left_out)) scene.notes.push_back(std::move(note));
   if (!missing.empty())
     scene.notes.push_back(fmt::format("Not made, or not to the end: {}. Make what is missing: `{}`",
                                       compare::words::listed(missing), scene.how_to_make));
@@ -399,7 +408,7 @@ void judge(Number& n) {
   const auto amount = [&](double value) {
     return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
   };
-  const bool fluid = n.model != scenes::Model::elasto_viscoplastic;
+  const bool fluid = !laws::can_rest(n.model);
   if (!n.ours) {
     // `never` and `incomplete` are set by whoever read the run.
     if (n.verdict == Verdict::incomplete)

@@ -5,6 +5,7 @@
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
 #include "runs/run_directory.h"
+#include "scenes/text.h"
 #include "studies/validation/validation.h"
 
 namespace flowrest::studies::validation {
@@ -46,19 +47,17 @@ void print_numbers(const Validation& validation) {
       const std::string ours =
           n.ours ? compare::words::reading(*n.ours, n.uncertainty, reading.unit, n.grain) : "-";
       const std::size_t width = ours.find("±") == std::string::npos ? 14 : 15;
-      fmt::print(
-          "{:<20} {:<22} {:>10} {:>{}} {}{}\n", scene.name,
-          fmt::format(
-              "{} {}", n.solver == Solver::mpm ? "MPM" : "OpenFOAM",
-              scenes::to_string(n.model) == "elasto-viscoplastic" ? "solid" : scenes::to_string(n.model)),
-          target ? fmt::format("{:.4g} {}", *target, reading.unit) : "-", ours, width,
-          reading.name + ": " + n.words, n.noise.empty() ? "" : "; noisy: " + n.noise);
+      fmt::print("{:<20} {:<22} {:>10} {:>{}} {}{}\n", scene.name,
+                 fmt::format("{} {}", n.solver == Solver::mpm ? "MPM" : "OpenFOAM",
+                             laws::can_rest(n.model) ? "solid" : scenes::to_string(n.model)),
+                 target ? fmt::format("{:.4g} {}", *target, reading.unit) : "-", ours, width,
+                 reading.name + ": " + n.words, n.noise.empty() ? "" : "; noisy: " + n.noise);
     }
 }
 
 void print_notes(const Validation& validation) {
   for (const SceneFound& scene : validation.scenes)
-    for (const std::string& note : scene.notes) fmt::print("Note: {}: {}\n", scene.name, note);
+    for (const std::string& note : scene.notes) scenes::print_notes({scene.name + ": " + note});
 }
 
 /// A run came to no end of its own.

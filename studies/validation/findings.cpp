@@ -21,7 +21,6 @@ constexpr double told_apart = 0.005;   ///< s: half the interval at which histor
 constexpr double grids_apart = 15.0;   ///< mm, of spreads on two grids
 constexpr std::size_t named_at_most = 4;
 
-bool is_solid(scenes::Model model) { return model == scenes::Model::elasto_viscoplastic; }
 bool stops_by_itself(scenes::Kind kind) { return kind == scenes::Kind::slump || kind == scenes::Kind::l_box; }
 
 compare::words::Grain grain_of(const SceneFound& scene) {
@@ -55,7 +54,7 @@ bool publishes(const SceneFound& scene, const std::string& quantity) {
 /// The end of the solid's gauge in the same solver.
 std::optional<double> end_of_solid(const SceneFound& scene, Solver solver) {
   for (const Found* run : fine_runs(scene))
-    if (run->wanted.solver == solver && is_solid(run->wanted.model)) return run->gauge_end;
+    if (run->wanted.solver == solver && laws::can_rest(run->wanted.model)) return run->gauge_end;
   return std::nullopt;
 }
 
@@ -66,7 +65,7 @@ bool says_nothing(const Found& run) {
 
 void add_rest(std::vector<Finding>& all, const SceneFound& scene) {
   for (const Found* run : fine_runs(scene)) {
-    const bool solid = is_solid(run->wanted.model);
+    const bool solid = laws::can_rest(run->wanted.model);
     const std::string source = scene.kind == scenes::Kind::slump ? "Yu Figs. 8 and 14" : "Yu Figs. 19 and 20";
     Finding f = finding(solid ? "the solid stops by itself" : "the fluid does not stop", source, scene.name,
                         run->wanted);
@@ -101,7 +100,7 @@ void add_rest(std::vector<Finding>& all, const SceneFound& scene) {
 void add_length(std::vector<Finding>& all, const SceneFound& scene) {
   const bool arrives = publishes(scene, "arrival_s"), short_of_it = publishes(scene, "front_mm");
   for (const Found* run : fine_runs(scene)) {
-    if (!arrives && !(short_of_it && is_solid(run->wanted.model))) continue;
+    if (!arrives && !(short_of_it && laws::can_rest(run->wanted.model))) continue;
     Finding f = finding(
         arrives ? "reaches the end wall, as measured" : "the solid stops short of the end wall, as measured",
         "Yu Table 3", scene.name, run->wanted);
@@ -138,7 +137,7 @@ void add_flocculation(std::vector<Finding>& all, const SceneFound& scene) {
     const std::string goes = fmt::format("{} by {:.2g} a second at {}, {:.0f} % of what it has at rest",
                                          f.rate_end < 0.0 ? "falls" : "grows", std::abs(f.rate_end),
                                          compare::words::time(f.end_at), 100.0 * std::abs(share));
-    if (is_solid(f.model))
+    if (laws::can_rest(f.model))
       add("λ grows again once the solid rests", said(f.held || f.rate_end > 0.0),
           f.held ? fmt::format("rests with {:.2f}, from where it grows by {:.2g} a second", f.end,
                                f.growth_at_rest)
@@ -178,7 +177,8 @@ std::map<std::pair<Solver, std::string>, Group> groups_of(const std::vector<Scen
 }
 
 std::string named(const Number& n) {
-  return fmt::format("{}{}", n.published.scene, is_solid(n.model) ? "" : " " + scenes::to_string(n.model));
+  return fmt::format("{}{}", n.published.scene,
+                     laws::can_rest(n.model) ? "" : " " + scenes::to_string(n.model));
 }
 
 /// The order of the funnels' times: every pair that the paper tells apart.

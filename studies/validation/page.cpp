@@ -7,6 +7,7 @@
 
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
+#include "runs/command.h"
 #include "runs/run_directory.h"
 #include "studies/validation/validation.h"
 
@@ -30,7 +31,7 @@ std::string who(const Number& n) { return who(n.solver, n.model); }
 
 std::string unit_of(const Number& n) { return compare::reading_named(n.published.quantity).unit; }
 
-bool is_solid(const Number& n) { return n.model == scenes::Model::elasto_viscoplastic; }
+bool is_solid(const Number& n) { return laws::can_rest(n.model); }
 
 /// "a, b, c and 4 more".
 std::string some_of(std::vector<std::string> items, const std::string& separator,
@@ -262,7 +263,7 @@ class ValidationPage {
       if (scene.kind != scenes::Kind::slump && scene.kind != scenes::Kind::l_box) continue;
       for (const Found& run : scene.runs) {
         if (run.wanted.coarse || run.outcome.ending != Ending::finished) continue;
-        const bool solid = run.wanted.model == scenes::Model::elasto_viscoplastic;
+        const bool solid = laws::can_rest(run.wanted.model);
         (solid ? solids : fluids)++;
         if (!solid) continue;
         if (run.rest)
@@ -334,10 +335,10 @@ class ValidationPage {
       for (const Found& run : scene.runs) {
         if (run.wanted.coarse || run.outcome.ending != Ending::finished) continue;
         const auto fine = [](const Wanted& w) { return !w.coarse; };
-        const bool solid = run.wanted.model == scenes::Model::elasto_viscoplastic;
+        const bool solid = laws::can_rest(run.wanted.model);
         if (!solid)
           if (const auto d = of(run, [&](const Wanted& a, const Wanted& b) {
-                return fine(b) && a.solver == b.solver && b.model == scenes::Model::elasto_viscoplastic;
+                return fine(b) && a.solver == b.solver && laws::can_rest(b.model);
               }))
             law.push_back(*d);
         if (run.wanted.solver == Solver::foam)
@@ -644,7 +645,7 @@ class ValidationPage {
                      {"What", "", {}, true},
                      {"Here", "", {}, true}};
     for (const PaperItem& item : validation_.items) {
-      std::string here = fmt::format("not among these scenes: flowrest validate {}", item.scene);
+      std::string here = "not among these scenes: " + runs::command_line({"validate", item.scene});
       for (const SceneFound& scene : validation_.scenes) {
         if (scene.name != item.scene) continue;
         const auto done = std::count_if(scene.runs.begin(), scene.runs.end(), [](const Found& run) {

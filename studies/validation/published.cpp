@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "compare/exact/creep.h"
 #include "compare/exact/solutions.h"
+#include "runs/csv.h"
 #include "runs/run_directory.h"
 #include "scenes/text.h"
 
@@ -25,62 +24,26 @@ constexpr std::pair<Mark, const char*> marks[] = {{Mark::independent, ""},
                                                   {Mark::circular, "circular"},
                                                   {Mark::exact, "exact"}};
 
-/// Cells of a line; a quoted one may hold commas.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else if (c != '\r')
-      cells.back() += c;
-  }
-  return cells;
-}
-
-/// The rows of a table of scenes/ under its header, each with the place it was read at.
-struct Rows {
-  std::vector<std::string> header;
-  std::vector<std::pair<std::string, std::vector<std::string>>> rows;
-};
-
-Rows read_rows(const fs::path& path, std::size_t least) {
-  std::ifstream file(path);
-  if (!file) throw RunError(path.string() + ": no such file; it comes with the scenes");
-  Rows table;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#') continue;
-    auto cells = cells_of(line);
-    if (table.header.empty()) {
-      table.header = std::move(cells);
-      continue;
-    }
-    const std::string place = fmt::format("{}:{}", path.string(), number);
-    if (cells.size() < least || cells.size() > table.header.size())
-      throw RunError(fmt::format("{}: has {} cells; expected: {}", place, cells.size(),
-                                 least == table.header.size()
-                                     ? fmt::format("{}", least)
-                                     : fmt::format("{} to {}", least, table.header.size())));
-    cells.resize(table.header.size());
-    table.rows.emplace_back(place, std::move(cells));
+/// A table of scenes/, whose rows may leave out cells at their end but for the first `least`.
+runs::CsvText read_rows(const fs::path& path, std::size_t least) {
+  if (!fs::exists(path)) throw RunError(path.string() + ": no such file; it comes with the scenes");
+  runs::CsvText table = runs::read_csv_text(path);
+  const std::size_t columns = table.header.cells.size();
+  for (auto& row : table.rows) {
+    if (row.cells.size() < least || row.cells.size() > columns)
+      throw RunError(
+          fmt::format("{}: has {} cells; expected: {}", table.place(row), row.cells.size(),
+                      least == columns ? fmt::format("{}", least) : fmt::format("{} to {}", least, columns)));
+    row.cells.resize(columns);
   }
   return table;
 }
 
-std::optional<double> number_in(const std::string& cell, const std::string& place) {
+std::optional<double> number_in(const runs::CsvText& table, const std::string& cell,
+                                const std::string& place) {
   if (cell.empty()) return std::nullopt;
-  std::size_t read = 0;
-  double value = 0.0;
-  try {
-    value = std::stod(cell, &read);
-  } catch (const std::exception&) {
-    read = 0;
-  }
-  if (read != cell.size() || !std::isfinite(value))
+  const auto value = table.number(cell);
+  if (!value || !std::isfinite(*value))
     throw RunError(fmt::format("{}: '{}' is no number; expected: a number or nothing", place, cell));
   return value;
 }
@@ -107,13 +70,16 @@ std::string to_string(Mark mark) {
 std::vector<Published> read_published() {
   constexpr std::size_t least = 7;  // the model may be left out
   std::vector<Published> published;
-  for (const auto& [place, cells] : read_rows(scenes::scenes_folder() / "published.csv", least).rows) {
+  const auto table = read_rows(scenes::scenes_folder() / "published.csv", least);
+  for (const auto& row : table.rows) {
+    const auto& cells = row.cells;
+    const std::string place = table.place(row);
     Published p;
     p.scene = cells[0];
     p.quantity = cells[1];
-    p.measured = number_in(cells[2], place);
-    p.paper = number_in(cells[3], place);
-    p.allowed = number_in(cells[4], place).value_or(0.0);
+    p.measured = number_in(table, cells[2], place);
+    p.paper = number_in(table, cells[3], place);
+    p.allowed = number_in(table, cells[4], place).value_or(0.0);
     p.mark = mark_in(cells[5], place);
     p.source = cells[6];
     if (cells.size() > least && !cells[least].empty()) p.model = scenes::model_from_name(cells[least]);
@@ -125,8 +91,8 @@ std::vector<Published> read_published() {
 std::vector<PaperItem> read_paper_items() {
   std::vector<PaperItem> items;
   constexpr std::size_t columns = 4;
-  for (const auto& [place, cells] : read_rows(scenes::scenes_folder() / "papers.csv", columns).rows)
-    items.push_back({cells[0], cells[1], cells[2], cells[3]});
+  for (const auto& row : read_rows(scenes::scenes_folder() / "papers.csv", columns).rows)
+    items.push_back({row.cells[0], row.cells[1], row.cells[2], row.cells[3]});
   return items;
 }
 
@@ -146,15 +112,11 @@ std::vector<Published> exact_numbers(const std::string& name, const scenes::Scen
     p.mark = Mark::exact;
     p.source = "closed form";
     p.model = model;
-    if (model == scenes::Model::papanastasiou || model == scenes::Model::bi_viscous) {
-      const bool smooth = model == scenes::Model::papanastasiou;
-      const auto time = smooth ? material.regularisation_time : material.critical_shear_rate;
-      if (!time) continue;
-      using Fluid = compare::exact::RegularisedFluid;
-      p.paper = compare::exact::duct_creep(
-          {smooth ? Fluid::Law::papanastasiou : Fluid::Law::bi_viscous, material.yield_stress,
-           material.plastic_viscosity, smooth ? *time : 1.0 / *time},
-          height, force);
+    if (laws::creeps(model)) {
+      if (!material.suits(model)) continue;
+      scenes::Material of_model = material;
+      of_model.model = model;
+      p.paper = compare::exact::duct_creep(of_model.flow_curve(), height, force);
     } else {
       if (stepped) continue;  // what stops has no velocity to be held against
       const compare::exact::DuctFlow flow{

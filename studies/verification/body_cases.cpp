@@ -186,10 +186,8 @@ Case incline(const Variant& v) {
 /// What is refined is the step.
 Case thixotropic_shear(const Variant& v) {
   const double rate = 5.0, begin = 3.0, end = 2.0;
-  mpm::FlowParameters<double> structure;
-  structure.flocculation_growth = 0.4;
-  structure.deflocculation = 0.2;
-  const double exact = mpm::known::flocculation_in_shear(structure, rate, begin, end);
+  const laws::Structure<double> structure{.growth = 0.4, .breakdown = 0.2};
+  const double exact = structure.after(begin, rate, end);
   Case c;
   c.name = "Thixotropy in simple shear";
   c.variant = words(v);
@@ -205,8 +203,7 @@ Case thixotropic_shear(const Variant& v) {
   c.cost = 3.0;
   c.compute = [=](double courant, const Workplace& place) {
     SolverSettings s = concrete(v, 0.01);
-    s.flow.flocculation_growth = structure.flocculation_growth;
-    s.flow.deflocculation = structure.deflocculation;
+    s.structure = structure;
     auto solver = mpm::known::sheared_block(s, rate, begin);
     // usual_step() is that of a Courant number of 0.7.
     const int steps = static_cast<int>(std::ceil(end / (usual_step(s) * courant / 0.7)));

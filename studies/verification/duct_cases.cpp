@@ -30,7 +30,7 @@ double regularised_velocity(const RegularisedFluid& fluid, double force, double 
   double sum = 0.0;
   for (int i = 0; i <= intervals; ++i) {
     const double weight = i == 0 || i == intervals ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-    sum += weight * fluid.shear_rate(low + i * h);
+    sum += weight * fluid.rate(low + i * h);
   }
   return sum * h / 3.0 / force;
 }
@@ -45,9 +45,8 @@ struct Variant {
 };
 
 RegularisedFluid fluid_of(const Variant& v, double yield) {
-  using Law = RegularisedFluid::Law;
-  return {v.model == "papanastasiou" ? Law::papanastasiou : Law::bi_viscous, yield, viscosity,
-          regularisation};
+  return compare::exact::regularised_fluid(scenes::model_from_name(v.model), yield, viscosity,
+                                           regularisation);
 }
 
 std::string cell_key(const Variant& v) { return v.solver == "foam" ? "foam.cell" : "mpm.cell"; }
@@ -106,7 +105,7 @@ Case bingham(const Variant& v, double yield) {
   const double force = 2000.0;
   const DuctFlow flow{{density, yield, viscosity}, height, force};
   const RegularisedFluid fluid = fluid_of(v, yield);
-  const bool exactly_bingham = v.model == "elasto-viscoplastic";
+  const bool exactly_bingham = laws::can_rest(scenes::model_from_name(v.model));
   const Velocity exact = exactly_bingham
                              ? Velocity([=](double y) { return flow.velocity(y); })
                              : Velocity([=](double y) { return regularised_velocity(fluid, force, y); });

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "compare/words.h"
+#include "runs/cores.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
@@ -138,8 +139,7 @@ std::vector<Finding> verify(const std::vector<Case>& cases, const fs::path& fold
       progress.update(static_cast<double>(done), fmt::format("{} of {} computations", done, tasks.size()));
     }
   };
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int jobs = options.jobs > 0 ? options.jobs : runs::cores();
   std::vector<std::jthread> workers;
   for (int i = 0; i < jobs; ++i) workers.emplace_back(work);
   workers.clear();  // waits for them

@@ -1,0 +1,207 @@
+// The laws at a point.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "laws/equation_of_state.h"
+#include "laws/law.h"
+#include "laws/test_dual.h"
+
+namespace flowrest::laws {
+namespace {
+
+using test::Dual;
+
+constexpr double yield = 50.0, viscosity = 30.0, modulus = 4e4;
+constexpr Parameters<double> concrete{yield, viscosity, 100.0, 0.01};
+
+TEST(Laws, AreKnownByTheirNamesInTheOrderOfReports) {
+  int order = 0;
+  for (const Law law : every_law) {
+    EXPECT_EQ(law_named(name_of(law)), law);
+    EXPECT_EQ(order_of(name_of(law)), order++);
+  }
+  EXPECT_EQ(law_named("bingham"), std::nullopt);
+  EXPECT_EQ(order_of("bingham"), order) << "behind all others";
+  EXPECT_STREQ(name_of(Law::elasto_viscoplastic), "elasto-viscoplastic");
+}
+
+TEST(Laws, OnlyTheSolidRestsAndOnlyRegularisedFluidsCreep) {
+  for (const Law law : every_law) {
+    EXPECT_EQ(can_rest(law), law == Law::elasto_viscoplastic);
+    EXPECT_EQ(creeps(law), law == Law::papanastasiou || law == Law::bi_viscous);
+    EXPECT_EQ(has_yield_stress(law), law != Law::newtonian);
+    EXPECT_TRUE(needs(law, Parameter::plastic_viscosity));
+  }
+}
+
+TEST(Laws, RateAndStressAreEachOthersInverse) {
+  for (const Law law : every_law)
+    for (double rate = 1e-8; rate < 1e3; rate *= 3.0) {
+      const FlowCurve curve{law, concrete};
+      // Above its yield stress the solid's stress tells little of a small rate.
+      const double lost = law == Law::elasto_viscoplastic ? 1e-16 * yield / (viscosity * rate) : 0.0;
+      EXPECT_NEAR(curve.rate(curve.stress(rate)) / rate, 1.0, 1e-11 + 4.0 * lost)
+          << name_of(law) << " at " << rate;
+    }
+}
+
+TEST(Laws, TheTangentIsTheStresssDerivative) {
+  for (const Law law : every_law)
+    for (const double rate : {1e-4, 3e-3, 0.02, 1.0, 50.0}) {
+      const Parameters<Dual> p{yield, viscosity, 100.0, 0.01};
+      const Dual stress = visit(law, [&](auto own) { return own.stress(p, Dual{rate, 1.0}); });
+      EXPECT_NEAR(stress.d, (FlowCurve{law, concrete}.tangent(rate)), 1e-12 * stress.d)
+          << name_of(law) << " at " << rate;
+    }
+}
+
+TEST(Laws, ViscositiesHaveTheirLimits) {
+  const auto papanastasiou = [](double rate) { return Papanastasiou::viscosity(concrete, rate); };
+  EXPECT_DOUBLE_EQ(papanastasiou(0.0), viscosity + 100.0 * yield);
+  EXPECT_NEAR(papanastasiou(1e-12), viscosity + 100.0 * yield, 1e-6);
+  EXPECT_NEAR(papanastasiou(10.0), viscosity + yield / 10.0, 1e-12);
+  EXPECT_DOUBLE_EQ(BiViscous::viscosity(concrete, 1e-6), viscosity + yield / 0.01);
+  EXPECT_DOUBLE_EQ(BiViscous::viscosity(concrete, 2.0), viscosity + yield / 2.0);
+  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::newtonian}) {
+    const FlowCurve curve{law, concrete};
+    EXPECT_NEAR(curve.stress(1e-9) / 1e-9, curve.largest_viscosity(), 1e-3) << name_of(law);
+    EXPECT_LE(curve.stress(0.5) / 0.5, curve.largest_viscosity() * (1.0 + 1e-15)) << name_of(law);
+  }
+}
+
+/// What a fluid's implicit update is: the trial less the elastic relaxation is the law's stress at the rate.
+TEST(Laws, AFluidsReturnBalances) {
+  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::newtonian})
+    for (const double trial : {1e-6, 1.0, 49.0, 50.0, 51.0, 400.0, 1e6})
+      for (const double shear : {0.1, 10.0, 1e3}) {
+        const auto relaxed = visit(law, [&](auto own) {
+          return own.relax(concrete, Trial<double>{trial, shear}, 0.3);
+        });
+        EXPECT_NEAR(relaxed.stress, (FlowCurve{law, concrete}.stress(relaxed.rate)), 1e-12 * trial)
+            << name_of(law) << " " << trial;
+        EXPECT_NEAR(relaxed.stress, trial - shear * relaxed.rate, 1e-14 * trial);
+      }
+}
+
+/// Constant shear from rest: tau = G rate t up to yield, then tau0 + eta rate (1 - exp(-G (t - t_y) / eta)).
+TEST(Laws, TheSolidsElasticStartYieldsAndReachesTheBinghamStress) {
+  const double rate = 0.5, dt = 1e-6, yields_at = yield / (modulus * rate);
+  double stress = 0.0, time = 0.0;
+  while (time < 5.0 * viscosity / modulus + yields_at) {
+    const Trial<double> trial{stress + modulus * dt * rate, modulus * dt};
+    stress = ElastoViscoplastic::relax(concrete, trial, 0.0).stress;
+    time += dt;
+    const double exact =
+        time < yields_at
+            ? modulus * rate * time
+            : yield + viscosity * rate * (1.0 - std::exp(-modulus * (time - yields_at) / viscosity));
+    ASSERT_NEAR(stress, exact, 0.02) << time;
+  }
+}
+
+/// Left alone, stress above yield relaxes to it and no further: the material is at rest under load.
+TEST(Laws, AtRestTheYieldStressStays) {
+  double stress = 80.0;
+  for (int i = 0; i < 100000; ++i)
+    stress = ElastoViscoplastic::relax(concrete, {stress, modulus * 1e-3}, 0.0).stress;
+  EXPECT_NEAR(stress, yield, 1e-12);
+  EXPECT_EQ(ElastoViscoplastic::relax(concrete, {49.9, modulus * 1e-3}, 0.0).rate, 0.0);
+}
+
+/// The closed form against what it solves (Yu et al. 2026, Eqs. 38, 39 and 45): at the returned rate the
+/// stress of the law, with the flocculation of that rate, is the trial's less the elastic relaxation; for
+/// alphas that cancel as printed.
+TEST(Thixotropy, TheSolidsReturnMapBalancesForEveryBreakdown) {
+  for (const double alpha : {0.0, 1e-12, 1e-6, 0.15, 1.0, 1e3})
+    for (const double trial : {60.0, 150.0, 1e3, 1e6})
+      for (const double lambda : {0.0, 0.5, 1.8}) {
+        const Structure<double> structure{0.39 / yield, alpha};
+        const double dt = 1e-3;
+        const auto relaxed = Thixotropic<ElastoViscoplastic>::relax(
+            concrete, structure, Trial<double>{trial, modulus * dt}, dt, lambda, 0.0);
+        if (relaxed.rate == 0.0) {
+          EXPECT_LE(trial, (1.0 + lambda + structure.growth * dt) * yield);
+          continue;
+        }
+        const double expected =
+            (1.0 + relaxed.flocculation) * yield + (viscosity + modulus * dt) * relaxed.rate;
+        EXPECT_NEAR(trial, expected, 1e-9 * trial) << alpha << " " << trial << " " << lambda;
+        EXPECT_NEAR(relaxed.flocculation, structure.stepped(lambda, relaxed.rate, dt), 1e-12 * (1 + lambda));
+      }
+}
+
+TEST(Thixotropy, AnyLawWithoutStructureIsTheLawItself) {
+  for (const Law law : every_law)
+    for (const double trial : {20.0, 60.0, 1e4})
+      visit(law, [&](auto own) {
+        using Own = decltype(own);
+        const auto plain = Own::relax(concrete, Trial<double>{trial, 40.0}, 0.1);
+        const auto decorated = Thixotropic<Own>::relax(concrete, Structure<double>{},
+                                                       Trial<double>{trial, 40.0}, 1e-3, 0.0, 0.1);
+        EXPECT_DOUBLE_EQ(plain.stress, decorated.stress) << name_of(law);
+        EXPECT_DOUBLE_EQ(plain.rate, decorated.rate) << name_of(law);
+        return 0;
+      });
+}
+
+TEST(Thixotropy, StepsApproachTheClosedFormAtRestAndInSteadyShear) {
+  const Structure<double> structure{0.4, 0.2};
+  EXPECT_DOUBLE_EQ(structure.after(0.5, 0.0, 10.0), 4.5) << "at rest it only grows";
+  for (const double rate : {0.0, 0.1, 5.0}) {
+    double coarse = 3.0, fine = 3.0;
+    for (int i = 0; i < 200; ++i) coarse = structure.stepped(coarse, rate, 1e-2);
+    for (int i = 0; i < 400; ++i) fine = structure.stepped(fine, rate, 5e-3);
+    const double exact = structure.after(3.0, rate, 2.0);
+    EXPECT_NEAR(fine, exact, 0.51 * std::abs(coarse - exact) + 1e-12) << "first order in the step";
+    EXPECT_NEAR(fine, exact, 5e-3);
+  }
+}
+
+/// Derivatives of a return by any of its data, against central differences.
+TEST(Laws, DerivativesGoThroughEveryReturn) {
+  using Data = std::vector<double>;  // tau0, eta, m, critical rate, growth, breakdown, trial, shear, lambda
+  const auto relaxed = [](Law law, bool thixotropic, const auto& x) {
+    using T = std::decay_t<decltype(x[0])>;
+    const Parameters<T> p{x[0], x[1], x[2], x[3]};
+    const Structure<T> structure{x[4], x[5]};
+    const Trial<T> trial{x[6], x[7]};
+    return visit(law, [&](auto own) {
+      using Own = decltype(own);
+      return thixotropic ? Thixotropic<Own>::relax(p, structure, trial, T(1e-2), x[8], T(0.4))
+                         : Own::relax(p, trial, T(0.4));
+    });
+  };
+  for (const Law law : every_law)
+    for (const bool thixotropic : {false, true})
+      for (const double trial : {30.0, 300.0}) {
+        const Data at{yield, viscosity, 20.0, 0.05, 0.1, 0.3, trial, 40.0, 0.6};
+        for (std::size_t i = 0; i < at.size(); ++i) {
+          std::vector<Dual> seeded(at.begin(), at.end());
+          seeded[i].d = 1.0;
+          Data low = at, high = at;
+          const double nudge = 1e-6 * at[i];
+          low[i] -= nudge;
+          high[i] += nudge;
+          const auto exact = relaxed(law, thixotropic, seeded);
+          const auto below = relaxed(law, thixotropic, low), above = relaxed(law, thixotropic, high);
+          EXPECT_NEAR(exact.stress.d, (above.stress - below.stress) / (2.0 * nudge), 1e-7 * (trial / at[i]))
+              << name_of(law) << " by " << i;
+          EXPECT_NEAR(exact.rate.d, (above.rate - below.rate) / (2.0 * nudge),
+                      1e-7 * (exact.rate.v + 1.0) / at[i])
+              << name_of(law) << " by " << i;
+        }
+      }
+}
+
+TEST(EquationOfState, PressureIsTheEnergysSlope) {
+  const EquationOfState<Dual> state{1e5, 4e4, 7.0};
+  for (const double ratio : {0.97, 1.0, 1.01})
+    EXPECT_NEAR(-state.energy(Dual{ratio, 1.0}).d, state.pressure(ratio).v, 1e-9);
+  EXPECT_EQ(state.pressure(1.0).v, 0.0);
+}
+
+}  // namespace
+}  // namespace flowrest::laws

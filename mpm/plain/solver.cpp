@@ -1,0 +1,275 @@
+#include "mpm/plain/solver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "mpm/plain/step.h"
+
+namespace flowrest::mpm::plain {
+
+namespace {
+
+template <class T>
+Material<T> material_of(const SolverSettings& s) {
+  Material<T> m;
+  m.density = s.density;
+  m.state = {static_cast<T>(s.state.bulk_modulus), static_cast<T>(s.state.shear_modulus),
+             static_cast<T>(s.state.exponent)};
+  m.law = s.law;
+  m.parameters = {static_cast<T>(s.flow.yield_stress), static_cast<T>(s.flow.plastic_viscosity),
+                  static_cast<T>(s.flow.regularisation_time), static_cast<T>(s.flow.critical_shear_rate)};
+  m.thixotropic = s.thixotropic;
+  m.structure = {static_cast<T>(s.structure.growth), static_cast<T>(s.structure.breakdown)};
+  return m;
+}
+
+Numerics numerics_of(const SolverSettings& s) {
+  return {.axisymmetric = s.axisymmetric,
+          .cell = s.cell,
+          .bounds = s.bounds,
+          .dilatation = s.b_bar(),
+          .explicit_fluid = s.explicit_fluid,
+          .free_surface = s.free_surface,
+          .density_correction = s.density_correction};
+}
+
+template <class T, int Dim>
+std::unique_ptr<Contact<T, Dim>> contact_of(const SolverSettings& s) {
+  if (s.walls.empty()) return nullptr;
+  std::vector<T> friction;
+  for (const Wall& wall : s.walls)
+    friction.push_back(static_cast<T>(wall.contact == mpm::Contact::friction ? wall.friction : 0.0));
+  return std::make_unique<Contact<T, Dim>>(s.walls, std::move(friction), s.cell, s.bounds);
+}
+
+template <int Dim>
+Cell<Dim> cell_of(const CellIndex& index) {
+  Cell<Dim> cell;
+  std::copy_n(index.begin(), Dim, cell.begin());
+  return cell;
+}
+
+/// Calls use(number) for every number of a particle's state, in the order of SolverState's arrays.
+template <int Dim, class P, class Use>
+void visit_state(P& p, bool thixotropic, const Use& use) {
+  for (auto& x : p.place) use(x);
+  for (auto& v : p.velocity) use(v);
+  for (auto& row : p.affine)
+    for (auto& a : row) use(a);
+  use(p.stress.xx);
+  use(p.stress.yy);
+  use(p.stress.xy);
+  if constexpr (Dim == 3) {
+    use(p.stress.xz);
+    use(p.stress.yz);
+  }
+  use(p.volume_ratio);
+  use(p.pressure);
+  use(p.mass);
+  use(p.rate);
+  if (thixotropic) use(p.flocculation);
+}
+
+template <class T, int Dim>
+std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+  std::vector<Particle<T, Dim>> particles;
+  const laws::EquationOfState<T> state = material_of<T>(settings).state;
+  for (const Seed& seed : seeds) {
+    Particle<T, Dim>& p = particles.emplace_back();
+    p.cell = cell_of<Dim>(seed.cell);
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const T last = T(1) - T(0.5) * std::numeric_limits<T>::epsilon();
+      p.place[a] = std::clamp(static_cast<T>(seed.position[a]), T(0), last);
+      p.velocity[a] = static_cast<T>(seed.velocity[a]);
+    }
+    p.mass = static_cast<T>(seed.volume * settings.density);
+    p.volume_ratio = static_cast<T>(seed.volume_ratio);
+    p.pressure = state.pressure(p.volume_ratio);
+    if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
+  }
+  return particles;
+}
+
+template <class T, int Dim>
+std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const SolverState& state) {
+  std::vector<Particle<T, Dim>> particles(state.cells.size());
+  for (std::size_t q = 0; q < particles.size(); ++q) {
+    particles[q].cell = cell_of<Dim>(state.cells[q]);
+    std::size_t k = 0;
+    visit_state<Dim>(particles[q], settings.thixotropic,
+                     [&](T& number) { number = static_cast<T>(state.arrays.at(k++)[q]); });
+  }
+  return particles;
+}
+
+template <class T, int Dim>
+class PlainSolver final : public Solver {
+ public:
+  PlainSolver(const SolverSettings& settings, std::vector<Particle<T, Dim>> particles)
+      : settings_(settings),
+        body_(material_of<T>(settings), numerics_of(settings), contact_of<T, Dim>(settings),
+              std::move(particles)) {}
+
+  PlainSolver(const SolverSettings& settings, const SolverState& state)
+      : PlainSolver(settings, particles_of<T, Dim>(settings, state)) {
+    if (!body_.walls()) return;
+    std::size_t i = 0;
+    body_.walls()->visit_forces([&](Vec<T, Dim>& force) {
+      for (std::size_t c = 0; c < Dim; ++c)
+        if (i + c < state.wall_forces.size()) force[c] = static_cast<T>(state.wall_forces[i + c]);
+      i += 3;
+    });
+  }
+
+  StepResult step(double step, const std::array<double, 3>& acceleration) override {
+    const double begin = now();
+    Vec<T, Dim> driving;
+    for (std::size_t a = 0; a < Dim; ++a) driving[a] = static_cast<T>(acceleration[a]);
+    const double kept = std::max(0.0, 1.0 - step / std::max(apic_relaxation_time_, step));
+    const Outcome<T> outcome = body_.step(time_, static_cast<T>(step), driving, static_cast<T>(kept));
+    time_ += step;
+    times_.particles_to_grid += now() - begin;
+    require_stable(outcome.faults, value(outcome.dissipated), step);
+    return {.largest_speed = outcome.largest_speed,
+            .largest_pressure = outcome.largest_pressure,
+            .dissipated = value(outcome.dissipated),
+            .wall_work = value(outcome.wall_work),
+            .momentum = value(outcome.momentum)};
+  }
+
+  void set_apic_relaxation_time(double time) override { apic_relaxation_time_ = time; }
+  void set_time(double time) override { time_ = time; }
+
+  mpm::Vector wall_force(std::size_t wall) const override {
+    mpm::Vector force{};
+    if (!body_.walls()) return force;
+    const Vec<T, Dim> own = body_.walls()->force(wall);
+    for (std::size_t c = 0; c < Dim; ++c) force[c] = value(own[c]);
+    return force;
+  }
+
+  void visit_motion(const std::function<void(const ParticleBatch&)>& use) override { use(motion()); }
+
+  void visit(const std::function<void(const ParticleBatch&)>& use) override {
+    ParticleBatch batch = motion();
+    const laws::EquationOfState<double>& state = settings_.state;
+    if (settings_.b_bar() == Dilatation::smooth)
+      for (const T& pressure : body_.acting_pressure()) batch.acting_pressure.push_back(value(pressure));
+    for (const Particle<T, Dim>& p : body_.particles()) {
+      const double ratio = value(p.volume_ratio), stress = value(p.stress.invariant());
+      const double at_rest = value(p.mass) / settings_.density;  // m3
+      const double shape =
+          settings_.explicit_fluid ? 0.0 : stress * stress / (2.0 * state.shear(ratio)) * ratio;
+      batch.volume.push_back(at_rest * ratio);
+      batch.rate.push_back(value(p.rate));
+      batch.shear_stress.push_back(stress);
+      batch.raw_pressure.push_back(value(p.pressure));
+      batch.elastic_energy.push_back(at_rest * (shape + state.energy(ratio)));
+      if (settings_.thixotropic) batch.flocculation.push_back(value(p.flocculation));
+    }
+    use(batch);
+  }
+
+  SolverState state() override {
+    SolverState out;
+    for (const Particle<T, Dim>& p : body_.particles()) {
+      CellIndex& cell = out.cells.emplace_back();
+      std::copy(p.cell.begin(), p.cell.end(), cell.begin());
+      std::size_t k = 0;
+      visit_state<Dim>(p, settings_.thixotropic, [&](const T& number) {
+        if (k == out.arrays.size()) out.arrays.emplace_back();
+        out.arrays[k++].push_back(value(number));
+      });
+    }
+    if (body_.walls())
+      body_.walls()->visit_forces([&](const Vec<T, Dim>& force) {
+        for (std::size_t c = 0; c < 3; ++c) out.wall_forces.push_back(c < Dim ? value(force[c]) : 0.0);
+      });
+    return out;
+  }
+
+  std::size_t particle_count() const override { return body_.particles().size(); }
+  std::size_t occupied_cells() const override { return body_.occupied_cells(); }
+  std::size_t bytes() const override {
+    return 2 * body_.particles().size() * sizeof(Particle<T, Dim>) +
+           body_.grid().size() * (sizeof(Node<T, Dim>) + sizeof(Average<T>));
+  }
+  int threads() const override { return 1; }
+  const std::string& instruction_set() const override { return instruction_set_; }
+  const StageTimes& stage_times() const override { return times_; }
+
+ private:
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  ParticleBatch motion() const {
+    ParticleBatch batch;
+    batch.count = body_.particles().size();
+    for (std::size_t a = 0; a < 3; ++a) {
+      batch.position[a].assign(batch.count, 0.0);
+      batch.velocity[a].assign(batch.count, 0.0);
+    }
+    for (std::size_t q = 0; q < batch.count; ++q) {
+      const Particle<T, Dim>& p = body_.particles()[q];
+      for (std::size_t a = 0; a < Dim; ++a) {
+        batch.position[a][q] = (p.cell[a] + value(p.place[a])) * settings_.cell;
+        batch.velocity[a][q] = value(p.velocity[a]);
+      }
+      batch.mass.push_back(value(p.mass));
+    }
+    return batch;
+  }
+
+  SolverSettings settings_;
+  Body<T, Dim> body_;
+  double apic_relaxation_time_ = 0.0;
+  double time_ = 0.0;  ///< s
+  StageTimes times_;
+  std::string instruction_set_ = "generic";
+};
+
+template <class T, int Dim, class From>
+std::unique_ptr<Solver> solver_from(const SolverSettings& settings, const From& from) {
+  if constexpr (std::is_same_v<From, SolverState>) {
+    return std::make_unique<PlainSolver<T, Dim>>(settings, from);
+  } else {
+    return std::make_unique<PlainSolver<T, Dim>>(settings, particles_of<T, Dim>(settings, from));
+  }
+}
+
+template <class From>
+std::unique_ptr<Solver> make(const SolverSettings& settings, const From& from) {
+  if (const std::string what = not_served(settings); !what.empty())
+    throw std::invalid_argument("the plain step does not serve " + what);
+  if (settings.single_precision)
+    return settings.dimension == 3 ? solver_from<float, 3>(settings, from)
+                                   : solver_from<float, 2>(settings, from);
+  return settings.dimension == 3 ? solver_from<double, 3>(settings, from)
+                                 : solver_from<double, 2>(settings, from);
+}
+
+}  // namespace
+
+std::string not_served(const SolverSettings& settings) {
+  if (settings.transfer != Transfer::quadratic_apic)
+    return "linear functions (mpm.scheme linear-flip and paper)";
+  if (settings.b_bar() == Dilatation::centroid) return "the dilatation of the cells' centres";
+  if (settings.stress_rate != StressRate::hughes_winget) return "the Jaumann rate";
+  for (const AxisBounds& b : settings.bounds)
+    if (b.lower == PlaneWall::friction || b.upper == PlaneWall::friction)
+      return "friction on walls along the grid";
+  return "";
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+  return make(settings, seeds);
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+  return make(settings, state);
+}
+
+}  // namespace flowrest::mpm::plain

@@ -1,0 +1,602 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "laws/equation_of_state.h"
+#include "laws/law.h"
+#include "mpm/plain/contact.h"
+#include "mpm/plain/grid.h"
+#include "mpm/plain/tensor.h"
+#include "mpm/solver/choices.h"
+
+/// The method on a page: one step of `quadratic-apic` over any scalar, in the order in which it happens. Read
+/// `Body::step` first, then its stages from top to bottom.
+///
+/// Yu: Yu et al. 2026. Jiang: Jiang et al. 2015, APIC.
+namespace flowrest::mpm::plain {
+
+/// What the material is.
+template <class T>
+struct Material {
+  double density = 0.0;  ///< kg/m3, at rest and without pressure
+  laws::EquationOfState<T> state;
+  laws::Law law = laws::Law::elasto_viscoplastic;
+  laws::Parameters<T> parameters;
+  bool thixotropic = false;
+  laws::Structure<T> structure;
+};
+
+/// How it is computed.
+struct Numerics {
+  bool axisymmetric = false;
+  double cell = 0.0;  ///< m
+  std::array<AxisBounds, 3> bounds{};
+  Dilatation dilatation = Dilatation::smooth;  ///< or the cell average
+  bool explicit_fluid = false;  ///< a fluid's stress is that of its rate, else found implicitly
+  bool free_surface = true;     ///< where there is none, as in a duct, every cell is full and stays so
+  double density_correction =
+      0.0;  ///< share of an overlap, or of a gap at a wall, taken back per unit strain
+};
+
+template <class T, int Dim>
+struct Particle {
+  Cell<Dim> cell{};
+  Vec<T, Dim> place{};                    ///< within its cell, in [0, 1)
+  Vec<T, Dim> velocity{};                 ///< m/s
+  std::array<Vec<T, Dim>, Dim> affine{};  ///< APIC: [i][j] is the difference of v_i over a cell along j, m/s
+  Deviator<T> stress{};                   ///< Pa
+  T volume_ratio{1};                      ///< J
+  T pressure{};                           ///< Pa, of its own volume
+  T mass{};                               ///< kg
+  T rate{};                               ///< 1/s, plastic shear rate of a solid, total one of a fluid
+  T flocculation{};                       ///< lambda
+};
+
+/// What a step tells.
+template <class T>
+struct Outcome {
+  double largest_speed = 0.0;     ///< m/s
+  double largest_pressure = 0.0;  ///< Pa
+  T dissipated{};                 ///< J
+  T wall_work{};                  ///< J, of walls of any shape
+  T momentum{};                   ///< kg m/s along the first axis, of the velocities that moved the particles
+  std::uint32_t faults = 0;       ///< particles that moved further than a cell, or are no longer finite
+};
+
+template <class T, int Dim>
+class Body {
+ public:
+  using Vector = Vec<T, Dim>;
+
+  Body(const Material<T>& material, const Numerics& numerics, std::unique_ptr<Contact<T, Dim>> walls,
+       std::vector<Particle<T, Dim>> particles)
+      : material_(material),
+        numerics_(numerics),
+        grid_(numerics.bounds),
+        walls_(std::move(walls)),
+        particles_(std::move(particles)) {
+    cover_and_sort();
+    update_volumes(T(0));
+  }
+
+  /// Advances by `dt` seconds from `time` under a uniform acceleration (m/s2). `keep` is the share of their
+  /// own velocity, and of its affine part, that particles keep over the step: none is APIC as published.
+  Outcome<T> step(double time, const T& dt, const Vector& acceleration, const T& keep) {
+    Outcome<T> outcome;
+    particles_to_grid(dt);
+    forces_to_velocities(dt, acceleration);
+    if (walls_) outcome.wall_work = hold_to_walls(time, dt, acceleration);
+    hold_to_planes(keep);
+    grid_to_particles(dt, keep);
+    average_dilatation();
+    strain_to_stress(dt, outcome);
+    move(time + value(dt), dt, outcome);
+    cover_and_sort();
+    update_volumes(dt);
+    return outcome;
+  }
+
+  const std::vector<Particle<T, Dim>>& particles() const { return particles_; }
+  const Grid<T, Dim>& grid() const { return grid_; }
+  Contact<T, Dim>* walls() const { return walls_.get(); }
+  std::size_t occupied_cells() const { return cells_.size(); }
+
+  /// The pressure that acts on every particle: what the particles around it, or in its cell, have on average.
+  std::vector<T> acting_pressure() const {
+    std::vector<T> pressure(particles_.size());
+    if (is_smooth()) {
+      for (std::size_t p = 0; p < particles_.size(); ++p)
+        pressure[p] = averaged(stencil(particles_[p]), &Average<T>::pressure);
+    } else {
+      for (std::size_t p = 0; p < particles_.size(); ++p) pressure[p] = particles_[p].pressure;
+      average_over_cells(pressure);
+    }
+    return pressure;
+  }
+
+ private:
+  /// What the grid tells a particle.
+  struct Motion {
+    Vector velocity{};     ///< m/s
+    Tensor<T> gradient{};  ///< 1/s
+    T dilatation{};        ///< 1/s, averaged over the cell; 0 where nodes average it
+    T filling{};
+  };
+
+  // 1 ------------------------------------------------------------------------------------------------------
+
+  /// Mass, momentum with APIC's affine part (Jiang, section 5.3), filling, and the impulse of the stress:
+  /// minus the integral of the stress times the weights' gradients.
+  void particles_to_grid(const T& dt) {
+    grid_.clear();
+    const std::vector<T> pressure = acting_pressure();
+    const std::vector<T> factor = numerics_.free_surface ? std::vector<T>{} : full_cell_factors();
+    const T per_cell = T(1.0 / numerics_.cell);
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      const Particle<T, Dim>& p = particles_[q];
+      const T volume = volume_of(p);
+      Tensor<T> stress = (factor.empty() ? p.stress : factor[q] * p.stress).tensor();
+      for (std::size_t a = 0; a < 3; ++a) stress[a][a] -= pressure[q];
+      const T along = dt * volume * per_cell;
+      // Particles of an axisymmetric body are whole rings, which the hoop's stress pulls inwards.
+      const T filling = volume / (T(cell_volume()) * circumference(p));
+      const T hoop = numerics_.axisymmetric ? dt * volume * stress[2][2] / radius(p) : T(0);
+      const Stencil<T, Dim> s = stencil(p);
+      s.visit([&](std::size_t n, const auto& at) {
+        Node<T, Dim>& node = grid_.node(n);
+        const T weight = s.weight_of(at);
+        const Vector slope = s.slope_of(at), offset = s.offset_of(at);
+        node.mass += weight * p.mass;
+        node.filling += weight * filling;
+        for (std::size_t i = 0; i < Dim; ++i) {
+          T velocity = p.velocity[i], pull(0);
+          for (std::size_t j = 0; j < Dim; ++j) {
+            velocity += p.affine[i][j] * offset[j];
+            pull += stress[i][j] * slope[j];
+          }
+          node.momentum[i] += weight * p.mass * velocity;
+          node.impulse[i] -= along * pull;
+        }
+        if (numerics_.axisymmetric) node.impulse[0] -= weight * hoop;
+      });
+    }
+  }
+
+  // 2 ------------------------------------------------------------------------------------------------------
+
+  /// New velocities. Every node falls as its mass does; what lies behind a plane wall is that of the mirrored
+  /// body, and is folded onto its image with the mirrored body's sign.
+  void forces_to_velocities(const T& dt, const Vector& acceleration) {
+    for (Node<T, Dim>& node : grid_.nodes())
+      for (std::size_t i = 0; i < Dim; ++i) node.impulse[i] += node.mass * dt * acceleration[i];
+    for (const Mirror& mirror : grid_.mirrors())
+      grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
+        Node<T, Dim>&from = grid_.node(ghost), &to = grid_.node(image);
+        to.mass += from.mass;
+        to.filling += from.filling;
+        for (std::size_t i = 0; i < Dim; ++i) {
+          const T sign(mirror.is_odd(static_cast<int>(i)) ? -1 : 1);
+          to.momentum[i] += sign * from.momentum[i];
+          to.impulse[i] += sign * from.impulse[i];
+        }
+        from = {};
+      });
+    for (Node<T, Dim>& node : grid_.nodes())
+      if (carries(node))
+        for (std::size_t i = 0; i < Dim; ++i)
+          node.velocity[i] = (node.momentum[i] + node.impulse[i]) / node.mass;
+  }
+
+  /// Walls of any shape change the new velocities (contact.h).
+  T hold_to_walls(double time, const T& dt, const Vector& acceleration) {
+    using std::sqrt;
+    const T square = dot<T, Dim>(acceleration, acceleration);
+    return walls_->hold(grid_, time, dt, square > T(0) ? dt * sqrt(square) : T(0));
+  }
+
+  // 3 ------------------------------------------------------------------------------------------------------
+
+  /// What particles will take up beside what they keep, and the mirrored body behind plane walls.
+  void hold_to_planes(const T& keep) {
+    for (Node<T, Dim>& node : grid_.nodes()) {
+      node.change = node.velocity;
+      if (carries(node))
+        for (std::size_t i = 0; i < Dim; ++i) node.change[i] -= keep * node.momentum[i] / node.mass;
+    }
+    correct_transfer();
+    for (const Mirror& mirror : grid_.mirrors())
+      grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
+        Node<T, Dim>& behind = grid_.node(ghost);
+        behind = grid_.node(image);
+        for (std::size_t i = 0; i < Dim; ++i)
+          if (mirror.is_odd(static_cast<int>(i))) {
+            behind.velocity[i] = -behind.velocity[i];
+            behind.change[i] = -behind.change[i];
+          }
+      });
+  }
+
+  /// A transfer to the grid and back leaves a quadratic profile v = a y + b y^2 as it is, but not across a
+  /// no-slip wall, where the mirrored body is a y - b y^2: folding moves the first node by B b h^2, B = 2/21
+  /// the integral over the places in a filled cell. With the second difference v2 - 3 v1 = 2 b h^2 of the
+  /// first two nodes that is taken out again: B / 2 / (1 - 3 B / 2) = 1/18. Where the second node holds
+  /// little the profile is not known.
+  void correct_transfer() {
+    const T share = T(1.0 / 18.0);
+    for (const Mirror& mirror : grid_.mirrors()) {
+      if (mirror.wall != PlaneWall::no_slip) continue;
+      grid_.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
+        Node<T, Dim>& one = grid_.node(first);
+        const Node<T, Dim>& two = grid_.node(second);
+        if (!(two.mass > T(0.5) * one.mass)) return;
+        for (std::size_t i = 0; i < Dim; ++i) {
+          one.velocity[i] -= share * (two.velocity[i] - T(3) * one.velocity[i]);
+          one.change[i] -= share * (two.change[i] - T(3) * one.change[i]);
+        }
+      });
+    }
+  }
+
+  // 4 ------------------------------------------------------------------------------------------------------
+
+  /// Velocities and affine parts (Jiang, section 5.3; the weights' second moment is a quarter of the cell
+  /// squared), and for the strain the velocity that moves a particle, its gradient, and how full its
+  /// surroundings are. The gradient L is referred to the body in the middle of the step, L - dt/2 L L (Hughes
+  /// and Winget 1980, Eq. 5): a motion x + dt v stretches by dt L and by half its square, which turns a
+  /// spinning body into a growing one unless the strain says so.
+  void grid_to_particles(const T& dt, const T& keep) {
+    motions_.assign(particles_.size(), {});
+    const T per_cell = T(1.0 / numerics_.cell), per_moment(4);
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      Particle<T, Dim>& p = particles_[q];
+      Motion& motion = motions_[q];
+      for (std::size_t i = 0; i < Dim; ++i) {
+        p.velocity[i] *= keep;
+        for (T& a : p.affine[i]) a *= keep;
+      }
+      const Stencil<T, Dim> s = stencil(p);
+      s.visit([&](std::size_t n, const auto& at) {
+        const Node<T, Dim>& node = grid_.node(n);
+        const T weight = s.weight_of(at);
+        const Vector slope = s.slope_of(at), offset = s.offset_of(at);
+        motion.filling += weight * node.filling;
+        for (std::size_t i = 0; i < Dim; ++i) {
+          motion.velocity[i] += weight * node.velocity[i];
+          p.velocity[i] += weight * node.change[i];
+          const T moment = per_moment * weight * node.change[i];
+          for (std::size_t j = 0; j < Dim; ++j) {
+            p.affine[i][j] += moment * offset[j];
+            motion.gradient[i][j] += per_cell * node.velocity[i] * slope[j];
+          }
+        }
+      });
+      if (numerics_.axisymmetric) motion.gradient[2][2] = motion.velocity[0] / radius(p);
+      const Tensor<T> square = motion.gradient * motion.gradient;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) motion.gradient[i][j] -= T(0.5) * dt * square[i][j];
+    }
+  }
+
+  // 5 ------------------------------------------------------------------------------------------------------
+
+  /// The rate of dilatation, averaged (B-bar): over a cell's particles, or through the nodes, which give it
+  /// back once the particles have moved (`update_volumes`).
+  void average_dilatation() {
+    std::vector<T> dilatation(particles_.size());
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      dilatation[q] = motions_[q].gradient.trace();
+      if (numerics_.free_surface) dilatation[q] = heeded(particles_[q], motions_[q], dilatation[q]);
+    }
+    if (!is_smooth()) {
+      average_over_cells(dilatation);
+      for (std::size_t q = 0; q < particles_.size(); ++q) motions_[q].dilatation = dilatation[q];
+      return;
+    }
+    for (Average<T>& a : grid_.averages()) a.dilatation = T(0);
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      const Particle<T, Dim>& p = particles_[q];
+      const T growth = p.mass * p.volume_ratio * dilatation[q];
+      const Stencil<T, Dim> s = stencil(p);
+      s.visit(
+          [&](std::size_t n, const auto& at) { grid_.average(n).dilatation += s.weight_of(at) * growth; });
+    }
+    fold(&Average<T>::dilatation);
+    for (Average<T>& a : grid_.averages()) a.dilatation = a.volume > T(0) ? a.dilatation / a.volume : T(0);
+    mirror(&Average<T>::dilatation);
+  }
+
+  /// What a particle makes of how full its surroundings are. With little around it, it is a drop, whose nodes
+  /// carry nothing else and weigh next to nothing near a cell's face: the less there is, the less of the
+  /// strain of volume it feels is its own. Where particles overlap they drifted together under shear, which
+  /// no divergence sees: it is told that it is compressed, in proportion to the shearing. Beside a no-slip
+  /// plane wall, in cells that material covers, a gap is closed the same way.
+  T heeded(const Particle<T, Dim>& p, const Motion& motion, const T& dilatation) const {
+    constexpr double drop_filling = 0.2;  // a plane surface has a half, an edge a quarter
+    const T full(1), share = laws::smaller(T(motion.filling / T(drop_filling)), full);
+    const T correction = T(numerics_.density_correction) * p.rate;
+    T heeded = dilatation * share * share * (Dim == 3 ? share : full);
+    if (motion.filling > full)
+      heeded -= correction * (motion.filling - full);
+    else
+      heeded += correction * (full - motion.filling) * covered(p.cell);
+    return heeded;
+  }
+
+  /// How far a cell beside a no-slip plane wall is covered with material, 0 to 1: by the filling of the node
+  /// over it. Other cells are not.
+  T covered(const Cell<Dim>& cell) const {
+    constexpr double from = 0.7, wholly_from = 0.95;
+    T most(0);
+    for (const Mirror& mirror : grid_.mirrors()) {
+      const auto a = static_cast<std::size_t>(mirror.axis);
+      if (mirror.wall != PlaneWall::no_slip || cell[a] != mirror.image) continue;
+      Cell<Dim> over = cell;
+      over[a] = mirror.second;
+      const T share = (grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from);
+      most = laws::larger(most, laws::smaller(share, T(1)));
+    }
+    return most;
+  }
+
+  // 6 ------------------------------------------------------------------------------------------------------
+
+  /// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/).
+  void strain_to_stress(const T& dt, Outcome<T>& outcome) {
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      Particle<T, Dim>& p = particles_[q];
+      const Tensor<T>& l = motions_[q].gradient;
+      p.volume_ratio *= growth(T(dt * motions_[q].dilatation));
+      p.pressure = material_.state.pressure(p.volume_ratio);
+      const Deviator<T> rate = strain_rate_deviator(l);
+      const T shear = material_.state.shear(p.volume_ratio) * dt;
+      const T stress = numerics_.explicit_fluid
+                           ? flow(dt, T(2) * rate, p)
+                           : relax(dt, shear, rotated(p.stress, l, dt) + T(2) * shear * rate, p);
+      outcome.dissipated += dt * volume_of(p) * stress * p.rate;
+      outcome.largest_pressure = std::max(outcome.largest_pressure, value(p.pressure));
+    }
+  }
+
+  /// Returns a trial stress to the law; gives its invariant after the step, Pa.
+  T relax(const T& dt, const T& shear, const Deviator<T>& trial, Particle<T, Dim>& p) const {
+    const laws::Trial<T> from{trial.invariant(), shear};
+    const laws::Relaxed<T> relaxed = laws::visit(material_.law, [&](auto law) {
+      using Law = decltype(law);
+      return material_.thixotropic ? laws::Thixotropic<Law>::relax(material_.parameters, material_.structure,
+                                                                   from, dt, p.flocculation, p.rate)
+                                   : Law::relax(material_.parameters, from, p.rate);
+    });
+    p.stress = from.stress > T(0) ? T(relaxed.stress / from.stress) * trial : trial;
+    p.rate = relaxed.rate;
+    p.flocculation = relaxed.flocculation;
+    return relaxed.stress;
+  }
+
+  /// A fluid's stress, explicitly: that of its rate; `twice_rate` is 2 D*, whose invariant is the shear rate.
+  T flow(const T& dt, const Deviator<T>& twice_rate, Particle<T, Dim>& p) const {
+    laws::Parameters<T> parameters = material_.parameters;
+    if (material_.thixotropic) {
+      p.flocculation = material_.structure.stepped(p.flocculation, p.rate, dt);
+      parameters.yield_stress *= T(1) + p.flocculation;
+    }
+    p.rate = twice_rate.invariant();
+    const T stress = laws::visit(material_.law, [&](auto law) { return law.stress(parameters, p.rate); });
+    p.stress = p.rate > T(0) ? T(stress / p.rate) * twice_rate : twice_rate;
+    return stress;
+  }
+
+  // 7 ------------------------------------------------------------------------------------------------------
+
+  /// Moves the particles with the grid's velocity, out of walls as they stand at the step's end, and into the
+  /// next cell. None passes a plane wall.
+  void move(double end, const T& dt, Outcome<T>& outcome) {
+    double largest_square = 0.0;
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      Particle<T, Dim>& p = particles_[q];
+      const Vector& v = motions_[q].velocity;
+      double square = 0.0, farthest = 0.0;
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const T far = v[a] * dt / T(numerics_.cell);
+        p.place[a] += far;
+        square += value(v[a]) * value(v[a]);
+        farthest += value(far) * value(far);
+      }
+      outcome.momentum += p.mass * v[0];
+      largest_square = std::max(largest_square, square);
+      if (walls_) keep_out(end, std::sqrt(farthest), p);
+      enter_cell(p, outcome);
+    }
+    outcome.largest_speed = std::sqrt(largest_square);
+  }
+
+  void keep_out(double end, double went, Particle<T, Dim>& p) {
+    if (went <= walls_->reach && !walls_->is_near(grid_, p.cell, end)) return;
+    Vector place;
+    for (std::size_t a = 0; a < Dim; ++a) place[a] = (T(p.cell[a]) + p.place[a]) * T(numerics_.cell);
+    if (!walls_->push_out(place, end)) return;
+    for (std::size_t a = 0; a < Dim; ++a) p.place[a] = place[a] / T(numerics_.cell) - T(p.cell[a]);
+  }
+
+  void enter_cell(Particle<T, Dim>& p, Outcome<T>& outcome) const {
+    const T last = T(1) - T(0.5) * T(std::numeric_limits<T>::epsilon());  // before the next cell
+    for (std::size_t a = 0; a < Dim; ++a) {
+      if (p.place[a] >= T(0) && p.place[a] < T(1)) continue;
+      const AxisBounds& bounds = numerics_.bounds[a];
+      const int shift = p.place[a] < T(0) ? -1 : 1, next = p.cell[a] + shift;
+      const T inside = p.place[a] - T(shift);
+      if (!(inside >= T(0) && inside <= T(1))) ++outcome.faults;
+      const bool is_held = (shift < 0 && bounds.lower != PlaneWall::none && next < bounds.lower_cell) ||
+                           (shift > 0 && bounds.upper != PlaneWall::none && next >= bounds.upper_cell);
+      if (is_held) {
+        p.place[a] = shift < 0 ? T(0) : last;
+      } else {
+        p.place[a] = inside < T(0) ? T(0) : inside > last ? last : inside;
+        p.cell[a] = next;
+      }
+    }
+    p.cell = grid_.wrapped(p.cell);
+  }
+
+  // 8 ------------------------------------------------------------------------------------------------------
+
+  /// Smooth B-bar: particles, in their new places, take up the step's averaged dilatation, and bring their
+  /// volume and pressure to the nodes, whose average acts in the next step. Averaging is its own adjoint in
+  /// the particles' volume, so that the averaged pressure works on the averaged dilatation. Nodes that are
+  /// seen for the first time have no dilatation to give.
+  void update_volumes(const T& dt) {
+    if (!is_smooth()) return;
+    for (Particle<T, Dim>& p : particles_) {
+      p.volume_ratio *= growth(T(dt * averaged(stencil(p), &Average<T>::dilatation)));
+      p.pressure = material_.state.pressure(p.volume_ratio);
+    }
+    for (Average<T>& a : grid_.averages()) a = {};
+    for (const Particle<T, Dim>& p : particles_) {
+      const T volume = p.mass * p.volume_ratio, thrust = volume * p.pressure;
+      const Stencil<T, Dim> s = stencil(p);
+      s.visit([&](std::size_t n, const auto& at) {
+        const T weight = s.weight_of(at);
+        grid_.average(n).volume += weight * volume;
+        grid_.average(n).pressure += weight * thrust;
+      });
+    }
+    fold(&Average<T>::volume);
+    fold(&Average<T>::pressure);
+    for (Average<T>& a : grid_.averages()) a.pressure = a.volume > T(0) ? a.pressure / a.volume : T(0);
+    mirror(&Average<T>::pressure);
+  }
+
+  // What the stages share
+  // ------------------------------------------------------------------------------------
+
+  bool is_smooth() const { return numerics_.dilatation == Dilatation::smooth; }
+  Stencil<T, Dim> stencil(const Particle<T, Dim>& p) const { return {grid_, p.cell, p.place}; }
+  T volume_of(const Particle<T, Dim>& p) const { return p.mass * p.volume_ratio / T(material_.density); }
+  double cell_volume() const { return std::pow(numerics_.cell, Dim); }
+
+  /// m; of a ring on the axis small but not nought
+  T radius(const Particle<T, Dim>& p) const {
+    const T cells = T(p.cell[0]) + p.place[0];
+    return T(numerics_.cell) * laws::larger(cells, T(1e-6));
+  }
+  T circumference(const Particle<T, Dim>& p) const {
+    return numerics_.axisymmetric ? T(2.0 * std::numbers::pi) * radius(p) : T(1);
+  }
+
+  /// Whether a node has more than the round-off of a mass.
+  bool carries(const Node<T, Dim>& node) const {
+    const double full = material_.density * std::pow(numerics_.cell, numerics_.axisymmetric ? 3 : Dim);
+    return node.mass > T(1e-25 * full);
+  }
+
+  /// By how much a strain increment stretches a volume, to second order (Yu, Eq. 30).
+  static T growth(const T& strain) { return T(1) + strain + T(0.5) * strain * strain; }
+
+  T averaged(const Stencil<T, Dim>& s, T Average<T>::*what) const {
+    T sum(0);
+    s.visit([&](std::size_t n, const auto& at) { sum += s.weight_of(at) * (grid_.average(n).*what); });
+    return sum;
+  }
+
+  /// Sums behind plane walls go to their images; averages there are those of the images. Scalars are even.
+  void fold(T Average<T>::*what) {
+    for (const Mirror& mirror : grid_.mirrors())
+      grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
+        grid_.average(image).*what += grid_.average(ghost).*what;
+        grid_.average(ghost).*what = T(0);
+      });
+  }
+  void mirror(T Average<T>::*what) {
+    for (const Mirror& mirror : grid_.mirrors())
+      grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
+        grid_.average(ghost).*what = grid_.average(image).*what;
+      });
+  }
+
+  /// Replaces what a cell's particles have by its mean, weighted by their volumes.
+  void average_over_cells(std::vector<T>& of_particles) const {
+    for (const auto& [first, last] : cells_) {
+      T sum(0), total(0);
+      for (std::size_t q = first; q < last; ++q) {
+        const T volume = volume_of(particles_[q]);
+        sum += volume * of_particles[q];
+        total += volume;
+      }
+      for (std::size_t q = first; q < last; ++q) of_particles[q] = sum / total;
+    }
+  }
+
+  /// Quadrature over cells that are known to be full (a duct's): factors 1 + c0 + c . (x - 1/2) of the
+  /// particles' shear stress with which their volumes sum over the cell what is constant exactly. Of what
+  /// they miss in what is linear along an axis, kept / (kept + spread) is left, `spread` a twelfth where they
+  /// lie evenly: across the flow a tenth, along it, where rows stream past each other, half.
+  std::vector<T> full_cell_factors() const {
+    constexpr std::size_t terms = Dim + 1;
+    std::vector<T> factor(particles_.size());
+    for (const auto& [first, last] : cells_) {
+      std::array<std::array<T, terms>, terms> moment{};
+      std::array<T, terms> c{};
+      const auto basis = [&](std::size_t term, std::size_t q) {
+        return term == 0 ? T(1) : T(particles_[q].place[term - 1] - T(0.5));
+      };
+      for (std::size_t q = first; q < last; ++q)
+        for (std::size_t i = 0; i < terms; ++i)
+          for (std::size_t j = 0; j < terms; ++j)
+            moment[i][j] += volume_of(particles_[q]) * basis(i, q) * basis(j, q);
+      for (std::size_t i = 0; i < terms; ++i) c[i] = T(i == 0 ? cell_volume() : 0.0) - moment[0][i];
+      const T volume = moment[0][0];
+      for (std::size_t i = 1; i < terms; ++i)
+        moment[i][i] += T(numerics_.bounds[i - 1].periodic ? 0.1 : 0.01) * volume;
+      // Symmetric and positive: elimination without pivots.
+      for (std::size_t i = 0; i < terms; ++i)
+        for (std::size_t j = i + 1; j < terms; ++j) {
+          const T share = moment[j][i] / moment[i][i];
+          for (std::size_t k = i; k < terms; ++k) moment[j][k] -= share * moment[i][k];
+          c[j] -= share * c[i];
+        }
+      for (std::size_t i = terms; i-- > 0;) {
+        for (std::size_t j = i + 1; j < terms; ++j) c[i] -= moment[i][j] * c[j];
+        c[i] /= moment[i][i];
+      }
+      for (std::size_t q = first; q < last; ++q) {
+        factor[q] = T(1);
+        for (std::size_t i = 0; i < terms; ++i) factor[q] += c[i] * basis(i, q);
+      }
+    }
+    return factor;
+  }
+
+  /// Makes the grid hold the nodes that the particles see and will see, and sorts them by cell.
+  void cover_and_sort() {
+    if (particles_.empty()) return;
+    Cell<Dim> lowest = particles_.front().cell, highest = lowest;
+    for (const Particle<T, Dim>& p : particles_)
+      for (std::size_t a = 0; a < Dim; ++a) {
+        lowest[a] = std::min(lowest[a], p.cell[a]);
+        highest[a] = std::max(highest[a], p.cell[a]);
+      }
+    if (grid_.cover(lowest, highest) && walls_) walls_->forget_nodes();
+    std::vector<std::size_t> start(grid_.size() + 1, 0);
+    for (const Particle<T, Dim>& p : particles_) ++start[grid_.index(p.cell) + 1];
+    cells_.clear();
+    for (std::size_t n = 0; n < grid_.size(); ++n) {
+      start[n + 1] += start[n];
+      if (start[n + 1] > start[n]) cells_.emplace_back(start[n], start[n + 1]);
+    }
+    sorted_.resize(particles_.size());
+    for (const Particle<T, Dim>& p : particles_) sorted_[start[grid_.index(p.cell)]++] = p;
+    std::swap(particles_, sorted_);
+  }
+
+  Material<T> material_;
+  Numerics numerics_;
+  Grid<T, Dim> grid_;
+  std::unique_ptr<Contact<T, Dim>> walls_;  ///< null where there are none but planes along the grid
+  std::vector<Particle<T, Dim>> particles_, sorted_;
+  std::vector<std::pair<std::size_t, std::size_t>> cells_;  ///< particles of each cell: from, to
+  std::vector<Motion> motions_;
+};
+
+}  // namespace flowrest::mpm::plain
