@@ -92,6 +92,13 @@ TEST_F(EarlierRunTest, WhatWouldBeAnotherRunIsRefusedByName) {
   EXPECT_THAT(refusal(run, {"time.ende=20"}), HasSubstr("nearest"));
 }
 
+TEST_F(EarlierRunTest, WhatItAsksForGivesEachKeyOnce) {
+  const EarlierRun run = run_that_ended(Status::end_time);
+  for (const char* setting : {"time.end=20", "time.end = 20"})
+    EXPECT_THAT(scene_to_go_on_with(run, {setting}).request.overrides.set,
+                ElementsAre("mpm.threads=1", setting));
+}
+
 TEST_F(EarlierRunTest, StoppingAtRestCannotBeTurnedOnLater) {
   scene.time.stop_at_rest = false;
   const EarlierRun run = run_that_ended(Status::interrupted);

@@ -597,6 +597,11 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
       runs::scene_to_go_on_with(earlier, set, {"mpm.threads", "output.checkpoint_interval"});
   RunOptions leg = options;
   if (earlier.info.value("method", "") == "plain") leg.method = Method::plain;
+  if (leg.method == Method::plain && !options.instruction_set.empty())
+    throw runs::RunError(fmt::format(
+        "{}: this run is computed with --method plain, which has no instruction set; allowed with "
+        "--resume: --set, --json, --quiet",
+        options.directory.string()));
   if (leg.method == Method::fast) leg.instruction_set = instruction_set_of(earlier, options.instruction_set);
   if (const auto checkpoint = read_checkpoint(options.directory)) {
     check_suits(*checkpoint, earlier, scene);

@@ -489,6 +489,19 @@ TEST_F(MpmRun, EveryTimeIsInEveryTableOnceWhateverEndsTheRun) {
   }
 }
 
+TEST_F(MpmRun, ARunOfThePlainMethodGoesOnWithIt) {
+  auto plain = options("whole");
+  plain.method = Method::plain;
+  run(tiny_slump({"time.end=0.1"}), plain);
+  plain.directory = folder / "run";
+  run(tiny_slump({"time.end=0.05"}), plain);
+  auto with_instructions = options("run");
+  with_instructions.instruction_set = "generic";
+  EXPECT_THAT(refusal_to_resume(with_instructions, {"time.end=0.1"}), HasSubstr("has no instruction set"));
+  resume(options("run"), {"time.end=0.1"});
+  expect_same_run(folder / "whole", folder / "run");
+}
+
 TEST_F(MpmRun, ARunOfAnotherInstructionSetGoesOnWithIt) {
   auto stopped = options("run");
   stopped.instruction_set = "generic";
