@@ -57,7 +57,7 @@ class Relay {
   void pass(const std::string& line) {
     const bool is_note = line.starts_with("Note: ");
     if (is_note && !noted_.insert(line).second) return;
-    fmt::print(is_note ? stderr : stdout, "{}\n", line);
+    runs::say(is_note ? stderr : stdout, line + "\n");
   }
 
  private:

@@ -410,7 +410,7 @@ class CaseRun {
     const double wall = wall_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     if (status_ == Status::interrupted && reason_.empty())
       reason_ = fmt::format("interrupted at {:.4g} s; go on with: {}", time(),
-                            runs::command_line(resume_arguments()));
+                            runs::command_to_resume("foam", options_.directory));
     write_info(wall);
     if (status_ == Status::failed)
       writer_.fail({fault_, reason_}, verdict());
@@ -422,10 +422,6 @@ class CaseRun {
                     runs::to_string(status_), time(), sampler_ ? sampler_->progress() : "nothing run",
                     writer_.info()["verdict"].get<std::string>(), steps_, static_cast<double>(steps_) / wall,
                     static_cast<double>(steps_ * cells()) / wall, 3600.0 * time() / wall));
-  }
-
-  std::vector<std::string> resume_arguments() const {
-    return {"foam", "--resume", runs::path_argument(options_.directory)};
   }
 
   void write_info(double wall) {

@@ -115,12 +115,15 @@ std::optional<scenes::Request> request_of(const Json& info) {
   return request.scene.empty() ? std::nullopt : std::optional(request);
 }
 
+std::string key_set_by(const std::string& setting) {
+  std::string key = setting.substr(0, setting.find('='));
+  std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
+  return key;
+}
+
 scenes::Request without_setting(scenes::Request request, const std::string& key) {
-  std::erase_if(request.overrides.set, [&key](const std::string& setting) {
-    std::string name = setting.substr(0, setting.find('='));
-    std::erase_if(name, [](char c) { return c == ' ' || c == '\t'; });
-    return name == key;
-  });
+  std::erase_if(request.overrides.set,
+                [&key](const std::string& setting) { return key_set_by(setting) == key; });
   return request;
 }
 
@@ -139,6 +142,10 @@ std::vector<std::string> scene_arguments(const scenes::Request& request, const s
   const auto kept = named.empty() ? request : without_setting(request, "material.model");
   for (const std::string& setting : kept.overrides.set) arguments.insert(arguments.end(), {"--set", setting});
   return arguments;
+}
+
+std::string command_to_resume(const std::string& solver, const fs::path& directory) {
+  return command_line({solver, "--resume", path_argument(directory)});
 }
 
 std::optional<std::string> command_to_make(const Json& info, const std::string& solver,

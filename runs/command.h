@@ -27,12 +27,18 @@ nlohmann::ordered_json request_json(const scenes::Request&);
 /// How the scene of a run was asked for, by its run.json; nothing where that does not say.
 std::optional<scenes::Request> request_of(const nlohmann::ordered_json& info);
 
+/// The key that a setting such as "time.end=120" sets.
+std::string key_set_by(const std::string& setting);
+
 /// A request without what it sets a key to.
 scenes::Request without_setting(scenes::Request, const std::string& key);
 
 /// The arguments that ask for a scene again, with a model or, where that is empty, with its own: the scene as
 /// it was named, --model, every --set. A path that leads elsewhere from here is given in full.
 std::vector<std::string> scene_arguments(const scenes::Request&, const std::string& model = "");
+
+/// The command that goes on with a run of a solver ("mpm" or "foam"): "flowrest mpm --resume 'my run'".
+std::string command_to_resume(const std::string& solver, const std::filesystem::path& directory);
 
 /// The command that makes a run of the scene of another run, or that run anew: "flowrest foam roussel-slump
 /// --model bi-viscous". It writes where nothing lies yet. Nothing where run.json does not say which scene it

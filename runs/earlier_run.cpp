@@ -40,13 +40,6 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The key that a setting "KEY = VALUE" is of.
-std::string key_of(const std::string& setting) {
-  const std::string key = setting.substr(0, setting.find('='));
-  const auto first = key.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : key.substr(first, key.find_last_not_of(" \t") - first + 1);
-}
-
 void check_changes(const EarlierRun& run, const scenes::Scene& scene, const std::vector<std::string>& free) {
   std::vector<std::string> allowed = {"time.end", "time.stop_at_rest=false"};
   allowed.insert(allowed.end(), free.begin(), free.end());
@@ -105,8 +98,7 @@ scenes::Scene scene_to_go_on_with(const EarlierRun& run, const std::vector<std::
   scene.request = run.scene.request;
   // So that a command made of it asks for the run as it is now.
   for (const std::string& setting : set) {
-    std::erase_if(scene.request.overrides.set,
-                  [&](const std::string& earlier) { return key_of(earlier) == key_of(setting); });
+    scene.request = without_setting(scene.request, key_set_by(setting));
     scene.request.overrides.set.push_back(setting);
   }
   check_changes(run, scene, free);

@@ -198,9 +198,8 @@ RunFolder::RunFolder(FolderLock lock, const scenes::Scene& scene, const std::str
                                folder, found.words));
   if (found.standing == Standing::unfinished && replace != Replace::unfinished)
     throw RunError(fmt::format(
-        "{}: this run has begun here and not come to its end; go on with it: flowrest {} --resume "
-        "{}, or --force to make it anew",
-        folder, solver, folder));
+        "{}: this run has begun here and not come to its end; --force makes it anew, or go on with it: {}",
+        folder, command_to_resume(solver, lock_.folder())));
   finished_ = found.standing == Standing::finished;
   earlier_ = std::move(found.info);
 }

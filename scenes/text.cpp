@@ -47,7 +47,8 @@ std::string encoding_fault(std::string_view text) {
 }
 
 void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "Note: {}\n", note);
+  // A closed stream is no reason to stop.
+  for (const std::string& note : notes) std::fputs(fmt::format("Note: {}\n", note).c_str(), stderr);
 }
 
 std::string toml_string(const std::string& text) {

@@ -95,6 +95,8 @@ TEST_F(Manners, AnInterruptedRunIsGoneOnWithByTheCommandItPrints) {
   ASSERT_EQ(exit_code(*process), 130) << said();
   const auto commands = commands_in(said());
   ASSERT_THAT(commands, Not(IsEmpty())) << said();
+  ASSERT_EQ(run(arguments), 2) << "it has begun there and is not made anew without a word";
+  EXPECT_THAT(commands_in(said()), testing::ElementsAre(commands.back())) << said();
   EXPECT_EQ(paste(commands.back()), 0) << commands.back() << "\n" << said();
   EXPECT_EQ(Json::parse(text_of(folder / "a run" / "run.json"))["status"], "end-time");
 }

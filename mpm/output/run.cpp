@@ -163,7 +163,7 @@ class MpmRun {
     while (state_.time < end_) {
       if (options_.interrupted())
         return stop(runs::Status::interrupted,
-                    "interrupted; go on with: " + runs::command_line(resume_arguments()));
+                    "interrupted; go on with: " + runs::command_to_resume("mpm", options_.directory));
       advance();
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= end_) {
         gauge();
@@ -179,13 +179,6 @@ class MpmRun {
   /// Whether the steps since the last row are those of a longer run, too: the last ones before an end between
   /// two rows are shortened to meet it.
   bool is_shared_with_longer_runs() const { return next_row() <= end_ || state_.time == last_row(); }
-
-  std::vector<std::string> resume_arguments() const {
-    std::vector<std::string> arguments = {"mpm", "--resume", runs::path_argument(options_.directory)};
-    if (const std::string& set = options_.instruction_set; !set.empty())
-      arguments.insert(arguments.end(), {"--instruction-set", set});
-    return arguments;
-  }
 
   bool due(double made, double interval) const { return state_.time >= made * interval * (1.0 - 1e-12); }
 
