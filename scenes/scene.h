@@ -220,7 +220,7 @@ struct Mpm {
   std::optional<double> time_step;   ///< s, fixed instead of CFL-controlled; `paper` sets 5e-4
   bool allow_unstable_step = false;  ///< lets time_step or cfl pass the stable limit
   Precision precision = Precision::double_precision;
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;  ///< 0: as many as the particles can feed, of the cores that are ours
   Seeding seeding = Seeding::lattice;
   std::uint64_t seed = 1;  ///< of the jitter
   FluidUpdate fluid_update = FluidUpdate::implicit_update;

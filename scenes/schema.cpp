@@ -272,7 +272,9 @@ std::vector<Key> mpm_keys() {
       boolean("mpm.allow_unstable_step", AT(draft.scene.mpm.allow_unstable_step),
               "lets time_step and cfl pass the stable limit"),
       choice("mpm.precision", AT(draft.scene.mpm.precision), "floating-point numbers of the solver"),
-      integer("mpm.threads", 0, 4096, AT(draft.scene.mpm.threads), "threads; 0 takes all cores"),
+      integer("mpm.threads", 0, 4096, AT(draft.scene.mpm.threads),
+              "threads; 0 takes as many as the particles can feed, of the cores that are ours (affinity, "
+              "limits of control groups, OMP_NUM_THREADS)"),
       choice(
           "mpm.seeding", AT(draft.scene.mpm.seeding),
           "where particles start: on a lattice, at a random place in each of its sites, or at the centroids "

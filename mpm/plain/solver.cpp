@@ -72,11 +72,20 @@ void visit_state(P& p, bool thixotropic, const Use& use) {
   if (thixotropic) use(p.flocculation);
 }
 
+/// Calls use(number) for one of them.
+template <int Dim, class P, class Use>
+void visit_number(P& p, bool thixotropic, int wanted, const Use& use) {
+  int number = 0;
+  visit_state<Dim>(p, thixotropic, [&](auto& value) {
+    if (number++ == wanted) use(value);
+  });
+}
+
 template <class T, int Dim>
-std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const SeedSource& seeds) {
   std::vector<Particle<T, Dim>> particles;
   const laws::EquationOfState<T> state = material_of<T>(settings).state;
-  for (const Seed& seed : seeds) {
+  seeds([&](const Seed& seed) {
     Particle<T, Dim>& p = particles.emplace_back();
     p.cell = cell_of<Dim>(seed.cell);
     for (std::size_t a = 0; a < Dim; ++a) {
@@ -88,18 +97,19 @@ std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const
     p.volume_ratio = static_cast<T>(seed.volume_ratio);
     p.pressure = state.pressure(p.volume_ratio);
     if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
-  }
+  });
   return particles;
 }
 
 template <class T, int Dim>
-std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const SolverState& state) {
+std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const StoredState& state) {
   std::vector<Particle<T, Dim>> particles(state.cells.size());
-  for (std::size_t q = 0; q < particles.size(); ++q) {
-    particles[q].cell = cell_of<Dim>(state.cells[q]);
-    std::size_t k = 0;
-    visit_state<Dim>(particles[q], settings.thixotropic,
-                     [&](T& number) { number = static_cast<T>(state.arrays.at(k++)[q]); });
+  for (std::size_t q = 0; q < particles.size(); ++q) particles[q].cell = cell_of<Dim>(state.cells[q]);
+  for (int k = 0; k < state.array_count; ++k) {
+    const std::vector<double> array = state.array(k);
+    for (std::size_t q = 0; q < particles.size(); ++q)
+      visit_number<Dim>(particles[q], settings.thixotropic, k,
+                        [&](T& number) { number = static_cast<T>(array.at(q)); });
   }
   return particles;
 }
@@ -112,7 +122,7 @@ class PlainSolver final : public Solver {
         body_(material_of<T>(settings), numerics_of(settings), contact_of<T, Dim>(settings),
               std::move(particles)) {}
 
-  PlainSolver(const SolverSettings& settings, const SolverState& state)
+  PlainSolver(const SolverSettings& settings, const StoredState& state)
       : PlainSolver(settings, particles_of<T, Dim>(settings, state)) {
     if (!body_.walls()) return;
     std::size_t i = 0;
@@ -172,22 +182,36 @@ class PlainSolver final : public Solver {
     use(batch);
   }
 
-  SolverState state() override {
-    SolverState out;
-    for (const Particle<T, Dim>& p : body_.particles()) {
-      CellIndex& cell = out.cells.emplace_back();
-      std::copy(p.cell.begin(), p.cell.end(), cell.begin());
-      std::size_t k = 0;
-      visit_state<Dim>(p, settings_.thixotropic, [&](const T& number) {
-        if (k == out.arrays.size()) out.arrays.emplace_back();
-        out.arrays[k++].push_back(value(number));
-      });
-    }
+  void visit_cells(const std::function<void(std::span<const CellIndex>)>& use) override {
+    std::vector<CellIndex> cells;
+    for (const Particle<T, Dim>& p : body_.particles())
+      std::copy(p.cell.begin(), p.cell.end(), cells.emplace_back().begin());
+    use(cells);
+  }
+
+  void visit_array(int array, const std::function<void(std::span<const double>)>& use) override {
+    std::vector<double> numbers;
+    for (const Particle<T, Dim>& p : body_.particles())
+      visit_number<Dim>(p, settings_.thixotropic, array, [&](const T& n) { numbers.push_back(value(n)); });
+    use(numbers);
+  }
+
+  int array_count() const override {
+    int count = 0;
+    const Particle<T, Dim> any{};
+    visit_state<Dim>(any, settings_.thixotropic, [&](const T&) { ++count; });
+    return count;
+  }
+
+  int tile_capacity() const override { return 0; }
+
+  std::vector<double> wall_forces() const override {
+    std::vector<double> forces;
     if (body_.walls())
       body_.walls()->visit_forces([&](const Vec<T, Dim>& force) {
-        for (std::size_t c = 0; c < 3; ++c) out.wall_forces.push_back(c < Dim ? value(force[c]) : 0.0);
+        for (std::size_t c = 0; c < 3; ++c) forces.push_back(c < Dim ? value(force[c]) : 0.0);
       });
-    return out;
+    return forces;
   }
 
   std::size_t particle_count() const override { return body_.particles().size(); }
@@ -233,7 +257,7 @@ class PlainSolver final : public Solver {
 
 template <class T, int Dim, class From>
 std::unique_ptr<Solver> solver_from(const SolverSettings& settings, const From& from) {
-  if constexpr (std::is_same_v<From, SolverState>) {
+  if constexpr (std::is_same_v<From, StoredState>) {
     return std::make_unique<PlainSolver<T, Dim>>(settings, from);
   } else {
     return std::make_unique<PlainSolver<T, Dim>>(settings, particles_of<T, Dim>(settings, from));
@@ -264,12 +288,20 @@ std::string not_served(const SolverSettings& settings) {
   return "";
 }
 
-std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SeedSource& seeds) {
   return make(settings, seeds);
 }
 
-std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const StoredState& state) {
   return make(settings, state);
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+  return make(settings, source_of(seeds));
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+  return make(settings, stored(state));
 }
 
 }  // namespace flowrest::mpm::plain

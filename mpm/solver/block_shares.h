@@ -8,20 +8,23 @@
 
 namespace flowrest::mpm {
 
-/// Loops over blocks, shared out among threads. Every loop gives a thread the same blocks first, for what the
-/// last loop left of them is in its core's cache; one that is done with its own helps the others, from their
-/// ends.
+/// A loop over blocks, shared out among threads. Every loop gives a thread the same blocks first, for what
+/// the last loop left of them is in its core's cache; one that is done with its own helps the others, from
+/// their ends.
 class BlockShares {
  public:
-  explicit BlockShares(int threads = 1, int loops = 1)
-      : threads_(static_cast<std::size_t>(threads)),
-        ends_(threads_, 0),
-        left_(threads_ * static_cast<std::size_t>(loops)) {}
+  explicit BlockShares(int threads = 1)
+      : threads_(static_cast<std::size_t>(threads)), ends_(threads_, 0), left_(threads_) {}
 
   int threads() const { return static_cast<int>(threads_); }
 
   /// Shares out blocks `0 .. ends.back() - 1` anew: a thread's own end at `ends[thread]`.
   void share_out(std::vector<std::uint32_t> ends) { ends_ = std::move(ends); }
+  /// The same, with as many for every thread.
+  void share_out_evenly(std::size_t blocks) {
+    for (std::size_t t = 0; t < threads_; ++t)
+      ends_[t] = static_cast<std::uint32_t>(blocks * (t + 1) / threads_);
+  }
 
   /// The thread that a block belongs to; the last one's are all that come after.
   int owner(std::uint32_t block) const {
@@ -29,23 +32,20 @@ class BlockShares {
     return static_cast<int>(at - ends_.begin());
   }
 
-  /// Before the loops begin, by one thread.
+  /// Before a loop begins, by one thread.
   void begin() {
-    for (std::size_t i = 0; i < left_.size(); ++i) {
-      const std::size_t thread = i % threads_;
-      left_[i].range.store(packed(thread == 0 ? 0 : ends_[thread - 1], ends_[thread]));
-    }
+    for (std::size_t t = 0; t < threads_; ++t)
+      left_[t].range.store(packed(t == 0 ? 0 : ends_[t - 1], ends_[t]), std::memory_order_relaxed);
   }
 
-  /// A thread's part of one of the loops; each is to be run once after begin(). There is no barrier in it.
+  /// A thread's part of the loop: returns once nothing is left to begin.
   template <class Body>
-  void run(int loop, int thread, const Body& body) {
-    Left* const left = &left_[static_cast<std::size_t>(loop) * threads_];
+  void run(int thread, const Body& body) {
     std::uint32_t block = 0;
     const auto own = static_cast<std::size_t>(thread);
-    while (left[own].take(block, Side::front)) body(block);
+    while (left_[own].take(block, Side::front)) body(block);
     for (std::size_t i = 1; i < threads_; ++i)
-      while (left[(own + i) % threads_].take(block, Side::back)) body(block);
+      while (left_[(own + i) % threads_].take(block, Side::back)) body(block);
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mpm/solver/sparse_blocks.h"
+#include "mpm/solver/team.h"
 
 namespace flowrest::mpm {
 
@@ -91,27 +92,23 @@ class Particles {
   }
 
   /// Sets aside what is between two blocks, and moves whole blocks to new places. Call `settle` next.
-  void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan) {
-    const int threads = static_cast<int>(plan.departing_end.size());
+  void make_way(const SparseBlocks& blocks, const SparseBlocks::Relocation& plan, Team& team) {
     departed_.resize(plan.departing.size() * arrays_.size());
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-    for (int share = 0; share < threads; ++share) {
-      const auto own = static_cast<std::size_t>(share);
-      for (std::size_t i = own == 0 ? 0 : plan.departing_end[own - 1]; i < plan.departing_end[own]; ++i)
+    // A thread takes what departs from its own blocks.
+    team.run(plan.departing.empty() ? 0 : plan.departing_end.size(), [&](std::uint32_t share, int) {
+      for (std::size_t i = share == 0 ? 0 : plan.departing_end[share - 1]; i < plan.departing_end[share]; ++i)
         for (std::size_t k = 0; k < arrays_.size(); ++k)
           departed_[i * arrays_.size() + k] = arrays_[k][plan.departing[i]];
-    }
+    });
     if (plan.laid_out_anew) {
-      lay_out_anew(plan.new_places, blocks.room(), threads);
+      lay_out_anew(plan.new_places, blocks.room(), team);
       return;
     }
-    const auto arrays = static_cast<std::int64_t>(arrays_.size());
-#pragma omp parallel for schedule(static) num_threads(threads) if (!plan.new_places.empty())
-    for (std::int64_t k = 0; k < arrays; ++k) {
-      T* const array = arrays_[static_cast<std::size_t>(k)].data();
+    team.run(plan.new_places.empty() ? 0 : arrays_.size(), [&](std::uint32_t k, int) {
+      T* const array = arrays_[k].data();
       for (const auto& move : plan.new_places)
         std::memmove(array + move.to, array + move.from, move.count * sizeof(T));
-    }
+    });
   }
 
   /// Puts one block's particles where they belong since the last relocation. Blocks may be settled side by
@@ -148,18 +145,17 @@ class Particles {
   }
 
  private:
-  void lay_out_anew(const std::vector<SparseBlocks::NewPlace>& moves, std::size_t room, int threads) {
-    const auto n = static_cast<std::int64_t>(moves.size());
+  void lay_out_anew(const std::vector<SparseBlocks::NewPlace>& moves, std::size_t room, Team& team) {
+    constexpr std::size_t together = 16;  // blocks that are short to copy
     for (std::size_t k = 0; k < arrays_.size(); ++k) {
       // One array to spare where the room stays: they take turns.
       if (spare_.size() != room) spare_ = AlignedArray<T>(room);
       const T* from = arrays_[k].data();
       T* to = spare_.data();
-#pragma omp parallel for schedule(static) num_threads(threads)
-      for (std::int64_t i = 0; i < n; ++i) {
-        const auto& move = moves[static_cast<std::size_t>(i)];
-        std::copy_n(from + move.from, move.count, to + move.to);
-      }
+      team.run((moves.size() + together - 1) / together, [&](std::uint32_t piece, int) {
+        for (std::size_t i = piece * together; i < std::min(moves.size(), (piece + 1) * together); ++i)
+          std::copy_n(from + moves[i].from, moves[i].count, to + moves[i].to);
+      });
       std::swap(arrays_[k], spare_);
       *members_[k] = arrays_[k].data();
     }

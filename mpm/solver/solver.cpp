@@ -1,9 +1,9 @@
 #include "mpm/solver/solver.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "mpm/boundary/nearby_walls.h"
@@ -13,59 +13,66 @@
 #include "mpm/solver/block_shares.h"
 #include "mpm/solver/kernels.h"
 #include "mpm/solver/particles.h"
+#include "mpm/solver/team.h"
 #include "mpm/transfer/shape.h"
+#include "runs/cores.h"
 #include "runs/run_directory.h"
 
 namespace flowrest::mpm {
 
 namespace {
 
-/// A thread is worth its barriers from about this many particles each.
+/// Two threads gain over one from about this many particles each.
 constexpr std::size_t particles_per_thread = 1500;
 constexpr int usual_tile_capacity = 96;
-/// Over blocks, and over blocks of nodes, at most.
-constexpr int loops_of_a_step = 3;
+
+/// Wall time from lap to lap, s.
+class Laps {
+ public:
+  void add_to(double& sum) {
+    const auto now = Clock::now();
+    sum += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
 
 template <class T>
 class SolverOf final : public Solver {
  public:
-  SolverOf(const SolverSettings& settings, const std::vector<Seed>& seeds)
-      : SolverOf(settings, seeds.size()) {
-    std::vector<CellIndex> cells(seeds.size());
-    for (std::size_t p = 0; p < seeds.size(); ++p) cells[p] = seeds[p].cell;
-    const auto places = blocks_.build(cells);
-    particles_.make_room(blocks_.room());
+  SolverOf(const SolverSettings& settings, const SeedSource& seeds) : SolverOf(settings) {
+    std::vector<CellIndex> cells;
+    seeds([&](const Seed& seed) { cells.push_back(seed.cell); });
+    const std::vector<std::uint32_t> places = find_places(std::move(cells));
     const ParticleView<T>& v = particles_.view();
-    for (std::size_t p = 0; p < seeds.size(); ++p) {
-      const std::uint32_t at = places[p];
+    auto place = places.begin();
+    seeds([&](const Seed& seed) {
+      const std::uint32_t at = *place++;
       for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
-        v.position[a][at] =
-            std::clamp(static_cast<T>(seeds[p].position[a]), lowest_in_cell(), highest_in_cell());
-        v.velocity[a][at] = static_cast<T>(seeds[p].velocity[a]);
+        v.position[a][at] = std::clamp(static_cast<T>(seed.position[a]), lowest_in_cell(), highest_in_cell());
+        v.velocity[a][at] = static_cast<T>(seed.velocity[a]);
       }
-      v.mass[at] = static_cast<T>(seeds[p].volume * settings.density);
-      v.volume_ratio[at] = static_cast<T>(seeds[p].volume_ratio);
+      v.mass[at] = static_cast<T>(seed.volume * settings.density);
+      v.volume_ratio[at] = static_cast<T>(seed.volume_ratio);
       v.pressure[at] = parameters_.state.at(v.volume_ratio[at]).pressure;
-      if (v.lambda) v.lambda[at] = static_cast<T>(seeds[p].flocculation);
-    }
-    prepare();
-    fit_workspaces();
-    update_volumes();
+      if (v.lambda) v.lambda[at] = static_cast<T>(seed.flocculation);
+    });
+    begin();
   }
 
-  SolverOf(const SolverSettings& settings, const SolverState& state)
-      : SolverOf(settings, state.cells.size()) {
-    const auto places = blocks_.build(state.cells);
-    particles_.make_room(blocks_.room());
+  SolverOf(const SolverSettings& settings, const StoredState& state) : SolverOf(settings) {
+    const std::vector<std::uint32_t> places = find_places(state.cells);
     for (int k = 0; k < particles_.array_count(); ++k) {
-      const auto& from = state.arrays.at(static_cast<std::size_t>(k));
-      for (std::size_t p = 0; p < from.size(); ++p) particles_.array(k)[places[p]] = static_cast<T>(from[p]);
+      const std::vector<double> from = state.array(k);
+      for (std::size_t p = 0; p < places.size(); ++p)
+        particles_.array(k)[places[p]] = static_cast<T>(from.at(p));
     }
     tile_capacity_ = std::max(state.tile_capacity, usual_tile_capacity);
     if (contact_) contact_->set_forces(state.wall_forces);
-    prepare();
-    fit_workspaces();
-    update_volumes();
+    begin();
   }
 
   StepResult step(double step, const std::array<double, 3>& acceleration) override {
@@ -105,19 +112,26 @@ class SolverOf final : public Solver {
     }
   }
 
-  SolverState state() override {
+  void visit_cells(const std::function<void(std::span<const CellIndex>)>& use) override {
+    for (const auto slot : blocks_.occupied()) use(blocks_.cells_of(slot));
+  }
+
+  void visit_array(int array, const std::function<void(std::span<const double>)>& use) override {
     settle();
-    SolverState out;
-    const auto places = blocks_.sorted_places();
-    out.cells = blocks_.sorted_cells();
-    for (int k = 0; k < particles_.array_count(); ++k) {
-      auto& to = out.arrays.emplace_back();
-      to.reserve(places.size());
-      for (const auto p : places) to.push_back(static_cast<double>(particles_.array(k)[p]));
+    const int cells = power(block_edge, settings_.dimension);
+    std::vector<double> values;
+    for (const auto slot : blocks_.occupied()) {
+      const BlockView block = blocks_.view(slot);
+      const T* const first = particles_.array(array) + block.first;
+      values.assign(first, first + block.start[cells]);
+      use(values);
     }
-    out.tile_capacity = tile_capacity_;
-    if (contact_) out.wall_forces = contact_->forces();
-    return out;
+  }
+
+  int array_count() const override { return particles_.array_count(); }
+  int tile_capacity() const override { return tile_capacity_; }
+  std::vector<double> wall_forces() const override {
+    return contact_ ? contact_->forces() : std::vector<double>{};
   }
 
   std::size_t particle_count() const override { return count_; }
@@ -134,25 +148,19 @@ class SolverOf final : public Solver {
     return particles_.bytes() + blocks_.bytes() +
            (arenas_.size() + nodes_.size() + averages_.size() + holds_.size()) * sizeof(T);
   }
-  int threads() const override { return threads_; }
+  int threads() const override { return team_->threads(); }
   const std::string& instruction_set() const override { return instruction_set_; }
   const StageTimes& stage_times() const override { return times_; }
 
  private:
-  SolverOf(const SolverSettings& settings, std::size_t count)
+  explicit SolverOf(const SolverSettings& settings)
       : settings_(settings),
-        count_(count),
         particles_({settings.dimension, settings.transfer == Transfer::quadratic_apic,
                     settings.transfer == Transfer::linear_flip, settings.thixotropic}),
         blocks_(settings.dimension, settings.bounds),
         instruction_set_(settings.instruction_set.empty() ? instruction_sets().front()
                                                           : settings.instruction_set),
         kernels_(kernels<T>(instruction_set_, settings.dimension, settings.axisymmetric, settings.transfer)) {
-    threads_ = settings.threads > 0
-                   ? settings.threads
-                   : std::clamp(static_cast<int>(count / particles_per_thread), 1, omp_get_num_procs());
-    shares_ = BlockShares(threads_, loops_of_a_step);
-    node_shares_ = BlockShares(threads_, loops_of_a_step);
     auto& p = parameters_;
     p.cell = static_cast<T>(settings.cell);
     p.density = static_cast<T>(settings.density);
@@ -190,6 +198,22 @@ class SolverOf final : public Solver {
     p.keep_out = [](const void* self, WallSet near, double(&place)[3]) {
       return static_cast<const SolverOf*>(self)->keep_out(near, place);
     };
+  }
+
+  /// Room for particles in these cells. Returns their places.
+  std::vector<std::uint32_t> find_places(std::vector<CellIndex> cells) {
+    count_ = cells.size();
+    std::vector<std::uint32_t> places = blocks_.build(cells);
+    cells = {};
+    particles_.make_room(blocks_.room());
+    return places;
+  }
+
+  /// With all particles in their places.
+  void begin() {
+    prepare();
+    fit_workspaces();
+    update_volumes();
   }
 
   /// Share of their own velocity that particles keep over a step. APIC: the rest, and so the smoothing of the
@@ -231,8 +255,13 @@ class SolverOf final : public Solver {
     const std::size_t slots = blocks_.slot_count();
     const std::size_t occupied = blocks_.occupied().size();
     const auto with_spare = [](std::size_t count) { return count + count / 16; };
-    if (arenas_.size() < occupied * arena_size) arenas_ = AlignedArray<T>(with_spare(occupied) * arena_size);
-    if (nodes_.size() < slots * nodes_size) nodes_ = AlignedArray<T>(with_spare(slots) * nodes_size);
+    const auto make_room = [&](AlignedArray<T>& array, std::size_t records, std::size_t size) {
+      if (array.size() >= records * size) return;
+      array = {};  // before there is another
+      array = AlignedArray<T>(with_spare(records) * size);
+    };
+    make_room(arenas_, occupied, arena_size);
+    make_room(nodes_, slots, nodes_size);
     if (smooth()) {
       // Blocks keep their slots, and the last step's dilatation is still to be taken up.
       const std::size_t size =
@@ -249,18 +278,31 @@ class SolverOf final : public Solver {
     }
     views_.clear();
     for (const auto slot : blocks_.occupied()) views_.push_back(blocks_.view(slot));
+    fit_team();
     share_out();
     if (contact_) mark_walls_nearby();
+  }
+
+  /// As many threads as the particles can feed now, unless the scene names a number.
+  void fit_team() {
+    const int fed = std::clamp(static_cast<int>(count_ / particles_per_thread), 1, cores_);
+    const int threads = settings_.threads > 0 ? settings_.threads : fed;
+    if (team_ && team_->threads() == threads) return;
+    team_ = std::make_unique<Team>(threads);
+    shares_ = BlockShares(threads);
+    node_shares_ = BlockShares(threads);
+    tables_.resize(static_cast<std::size_t>(threads));
   }
 
   /// Room for the fullest cell.
   void fit_workspaces() {
     while (static_cast<std::size_t>(tile_capacity_ - tile_padding) < blocks_.fullest_cell())
       tile_capacity_ += 32;
-    if (workspaces_.empty() || workspaces_.front().capacity != tile_capacity_) {
+    const auto threads = static_cast<std::size_t>(team_->threads());
+    if (workspaces_.size() != threads || workspaces_.front().capacity != tile_capacity_) {
       workspaces_.clear();
       workspace_memory_.clear();
-      for (int t = 0; t < threads_; ++t) {
+      for (std::size_t t = 0; t < threads; ++t) {
         workspace_memory_.emplace_back(static_cast<std::size_t>(workspace_arrays) *
                                        static_cast<std::size_t>(tile_capacity_));
         workspaces_.push_back({workspace_memory_.back().data(), tile_capacity_});
@@ -271,7 +313,7 @@ class SolverOf final : public Solver {
   /// Every thread gets as many particles, in blocks that lie side by side, and the nodes among them.
   void share_out() {
     const auto cells = static_cast<std::size_t>(power(block_edge, settings_.dimension));
-    const auto threads = static_cast<std::size_t>(threads_);
+    const auto threads = static_cast<std::size_t>(team_->threads());
     std::vector<std::uint32_t> ends;
     std::size_t before = 0;
     for (std::uint32_t b = 0; b < views_.size(); ++b) {
@@ -304,69 +346,47 @@ class SolverOf final : public Solver {
       contact_->place(blocks_, time_);
     }
     if (plane_friction_) plane_friction_->place(blocks_);
-    const ParticleView<T>& view = particles_.view();
     const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data(), holds_.data()};
-    double marks[6] = {};
-    shares_.begin();
-    node_shares_.begin();
-#pragma omp parallel num_threads(threads_)
-    {
-      const int thread = omp_get_thread_num();
-      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(thread)];
-      const auto over_blocks = [&](int loop, const auto& stage) {
-        shares_.run(loop, thread, [&](std::uint32_t b) { stage(views_[b]); });
-#pragma omp barrier
-      };
-      const auto over_nodes = [&](int loop, NodeStage<T> stage) {
-        node_shares_.run(loop, thread, [&](std::uint32_t b) { stage(parameters_, node_views_[b], grid); });
-#pragma omp barrier
-      };
-      const auto mark = [&](int i) {
-#pragma omp master
-        marks[i] = omp_get_wtime();
-      };
-      mark(0);
-      // A block's particles are put in order when they are needed next, for then they are in the cache
-      // anyway.
-      std::vector<T> table;
-      over_blocks(0, [&](BlockView& block) {
-        settle(block, table);
-        kernels_.particles_to_grid(parameters_, view, block, grid, workspace);
-      });
-      mark(1);
-      over_nodes(0, kernels_.update_nodes);
-      if (contact_ || plane_friction_) {
-#pragma omp single
-        hold_walls(grid);
-      }
-      mark(2);
-      over_blocks(1, [&](const BlockView& block) {
-        *block.sums = {};
-        kernels_.grid_to_particles(parameters_, view, block, grid, workspace);
-        if (!kernels_.remapped_to_particles) blocks_.plan_movers(block.slot);
-      });
-      mark(3);
-      if (smooth()) over_nodes(1, kernels_.average_dilatation);
-      if (kernels_.remapped_to_particles) {
-        over_nodes(2, kernels_.remap_nodes);
-        if (contact_ || plane_friction_) {
-#pragma omp single
-          hold_walls_remapped(grid);
-        }
-        mark(4);
-        over_blocks(2, [&](const BlockView& block) {
-          kernels_.remapped_to_particles(parameters_, view, block, grid, workspace);
-          blocks_.plan_movers(block.slot);
-        });
-      } else {
-        mark(4);
-      }
-      mark(5);
+    Laps laps;
+    // A block's particles are put in order when they are needed next, for then they are in the cache anyway.
+    over_blocks([&](BlockView& block, std::size_t thread) {
+      settle(block, tables_[thread]);
+      kernels_.particles_to_grid(parameters_, particles_.view(), block, grid, workspaces_[thread]);
+    });
+    laps.add_to(times_.particles_to_grid);
+    over_nodes(kernels_.update_nodes, grid);
+    hold_walls(grid);
+    laps.add_to(times_.nodes);
+    over_blocks([&](BlockView& block, std::size_t thread) {
+      *block.sums = {};
+      kernels_.grid_to_particles(parameters_, particles_.view(), block, grid, workspaces_[thread]);
+      if (!kernels_.remapped_to_particles) blocks_.plan_movers(block.slot);
+    });
+    laps.add_to(times_.grid_to_particles);
+    if (smooth()) over_nodes(kernels_.average_dilatation, grid);
+    if (!kernels_.remapped_to_particles) {
+      laps.add_to(times_.nodes);
+      return;
     }
-    times_.particles_to_grid += marks[1] - marks[0];
-    times_.nodes += marks[2] - marks[1];
-    times_.grid_to_particles += marks[3] - marks[2] + marks[5] - marks[4];
-    if (kernels_.remapped_to_particles) times_.nodes += marks[4] - marks[3];
+    over_nodes(kernels_.remap_nodes, grid);
+    hold_walls_remapped(grid);
+    laps.add_to(times_.nodes);
+    over_blocks([&](BlockView& block, std::size_t thread) {
+      kernels_.remapped_to_particles(parameters_, particles_.view(), block, grid, workspaces_[thread]);
+      blocks_.plan_movers(block.slot);
+    });
+    laps.add_to(times_.grid_to_particles);
+  }
+
+  /// Runs `stage(block, thread)` over all blocks, each on the thread that it is shared out to if that one has
+  /// time.
+  template <class Stage>
+  void over_blocks(const Stage& stage) {
+    team_->run(shares_,
+               [&](std::uint32_t b, int thread) { stage(views_[b], static_cast<std::size_t>(thread)); });
+  }
+  void over_nodes(NodeStage<T> stage, const Grid<T>& grid) {
+    team_->run(node_shares_, [&](std::uint32_t b, int) { stage(parameters_, node_views_[b], grid); });
   }
 
   /// Holds the nodes to every wall that the arenas do not hold themselves. Planes of friction are asked again
@@ -388,24 +408,14 @@ class SolverOf final : public Solver {
   /// cell, and the pressure that acts in the next step. With a step of no length, that pressure alone.
   void update_volumes() {
     if (!smooth()) return;
-    const double begin = omp_get_wtime();
+    Laps laps;
     const Grid<T> grid{arenas_.data(), nodes_.data(), averages_.data()};
-    shares_.begin();
-    node_shares_.begin();
-#pragma omp parallel num_threads(threads_)
-    {
-      const int thread = omp_get_thread_num();
-      const Workspace<T>& workspace = workspaces_[static_cast<std::size_t>(thread)];
-      std::vector<T> table;
-      shares_.run(0, thread, [&](std::uint32_t b) {
-        settle(views_[b], table);
-        kernels_.update_volumes(parameters_, particles_.view(), views_[b], grid, workspace);
-      });
-#pragma omp barrier
-      node_shares_.run(
-          0, thread, [&](std::uint32_t b) { kernels_.average_pressure(parameters_, node_views_[b], grid); });
-    }
-    times_.volumes += omp_get_wtime() - begin;
+    over_blocks([&](BlockView& block, std::size_t thread) {
+      settle(block, tables_[thread]);
+      kernels_.update_volumes(parameters_, particles_.view(), block, grid, workspaces_[thread]);
+    });
+    over_nodes(kernels_.average_pressure, grid);
+    laps.add_to(times_.volumes);
   }
 
   StepResult collect(double step) {
@@ -428,16 +438,16 @@ class SolverOf final : public Solver {
   }
 
   void relocate() {
-    const double begin = omp_get_wtime();
+    Laps laps;
     if (moved_) {
-      const auto& plan = blocks_.relocate(shares_);
+      const auto& plan = blocks_.relocate(shares_, *team_);
       for (const auto& h : plan.held)
         particles_.view().position[h.axis][h.place] = h.upper ? highest_in_cell() : lowest_in_cell();
-      particles_.make_way(blocks_, plan);
+      particles_.make_way(blocks_, plan, *team_);
       if (plan.other_blocks) prepare();
       fit_workspaces();
     }
-    times_.sorting += omp_get_wtime() - begin;
+    laps.add_to(times_.sorting);
   }
 
   /// One block's particles, where the last relocation has them, for a thread with a `table` of its own.
@@ -448,7 +458,7 @@ class SolverOf final : public Solver {
 
   /// Everything in its place, for those who look at particles between steps.
   void settle() {
-    for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), table_);
+    for (const auto slot : blocks_.occupied()) particles_.settle(blocks_.reordering(slot), tables_.front());
   }
 
   void fill_motion(ParticleBatch& batch, const BlockView& block) {
@@ -525,15 +535,16 @@ class SolverOf final : public Solver {
   double time_ = 0.0;                                 ///< s
   double drive_ = 0.0;                                ///< m/s that the driving force gives in a step
   double wall_work_ = 0.0;                            ///< J in this step
-  int threads_ = 1;
+  int cores_ = runs::cores();
+  std::unique_ptr<Team> team_;
   int tile_capacity_ = usual_tile_capacity;
   AlignedArray<T> arenas_, nodes_, averages_, holds_;
   std::vector<AlignedArray<T>> workspace_memory_;
   std::vector<Workspace<T>> workspaces_;
   std::vector<BlockView> views_;
   std::vector<NodeView> node_views_;
-  BlockShares shares_, node_shares_;  ///< of views_, and of node_views_
-  std::vector<T> table_;
+  BlockShares shares_, node_shares_;    ///< of views_, and of node_views_
+  std::vector<std::vector<T>> tables_;  ///< of each thread, to put a block in order on
   bool moved_ = false;
   StageTimes times_;
 };
@@ -548,14 +559,45 @@ void require_stable(std::uint32_t faults, double dissipated, double step) {
                     faults, step));
 }
 
-std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+SolverState Solver::state() {
+  SolverState out;
+  visit_cells([&](std::span<const CellIndex> c) { out.cells.insert(out.cells.end(), c.begin(), c.end()); });
+  for (int k = 0; k < array_count(); ++k) {
+    auto& to = out.arrays.emplace_back();
+    visit_array(k, [&](std::span<const double> v) { to.insert(to.end(), v.begin(), v.end()); });
+  }
+  out.tile_capacity = tile_capacity();
+  out.wall_forces = wall_forces();
+  return out;
+}
+
+SeedSource source_of(const std::vector<Seed>& seeds) {
+  return [&seeds](const std::function<void(const Seed&)>& use) {
+    for (const Seed& seed : seeds) use(seed);
+  };
+}
+
+StoredState stored(const SolverState& state) {
+  return {state.cells, [&state](int k) { return state.arrays.at(static_cast<std::size_t>(k)); },
+          static_cast<int>(state.arrays.size()), state.tile_capacity, state.wall_forces};
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SeedSource& seeds) {
   if (settings.single_precision) return std::make_unique<SolverOf<float>>(settings, seeds);
   return std::make_unique<SolverOf<double>>(settings, seeds);
 }
 
-std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const StoredState& state) {
   if (settings.single_precision) return std::make_unique<SolverOf<float>>(settings, state);
   return std::make_unique<SolverOf<double>>(settings, state);
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const std::vector<Seed>& seeds) {
+  return make_solver(settings, source_of(seeds));
+}
+
+std::unique_ptr<Solver> make_solver(const SolverSettings& settings, const SolverState& state) {
+  return make_solver(settings, stored(state));
 }
 
 }  // namespace flowrest::mpm

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ struct SolverSettings {
   laws::EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
   std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
-  int threads = 0;              ///< 0: as many as the particles can feed, up to all cores
+  int threads = 0;              ///< 0: as many as the particles can feed, of the cores that are ours
   std::string instruction_set;  ///< empty: the best this machine runs
 
   Dilatation b_bar() const {
@@ -56,6 +57,10 @@ struct Seed {
   double flocculation = 0.0;
   double volume_ratio = 1.0;  ///< J; `volume` is that at rest
 };
+
+/// Particles to begin with that are nowhere all at once: tells them one by one, the same ones in the same
+/// order whenever it is asked.
+using SeedSource = std::function<void(const std::function<void(const Seed&)>& use)>;
 
 /// Extremes and sums of one step.
 struct StepResult {
@@ -87,13 +92,22 @@ struct StageTimes {
   double volumes = 0.0;  ///< s of wall time, smooth B-bar only
 };
 
-/// Everything a solver holds, for checkpoints: particles in sorted order.
-struct SolverState {
+/// Everything a solver holds, for checkpoints: particles in sorted order. Their arrays are many times as long
+/// as anything else, and asked for one after the other.
+struct StoredState {
   std::vector<CellIndex> cells;
-  std::vector<std::vector<double>>
-      arrays;  ///< of every array, in the order of Particles; exact for either precision
+  std::function<std::vector<double>(int)> array;  ///< in the order of Particles; exact for either precision
+  int array_count = 0;
   int tile_capacity = 0;
   std::vector<double> wall_forces;  ///< N, at the walls' points: what the next step's contact starts from
+};
+
+/// The same, all of it at hand.
+struct SolverState {
+  std::vector<CellIndex> cells;
+  std::vector<std::vector<double>> arrays;
+  int tile_capacity = 0;
+  std::vector<double> wall_forces;
 };
 
 /// A material point solver for one scene. One call of a virtual function per step; none inside.
@@ -114,7 +128,14 @@ class Solver {
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
   /// The same with positions, velocities and masses alone, which cost little.
   virtual void visit_motion(const std::function<void(const ParticleBatch&)>& use) = 0;
-  virtual SolverState state() = 0;
+  /// A piece of the state of every block in turn, which add up to what StoredState has: its particles' cells,
+  /// and one of their arrays.
+  virtual void visit_cells(const std::function<void(std::span<const CellIndex>)>& use) = 0;
+  virtual void visit_array(int array, const std::function<void(std::span<const double>)>& use) = 0;
+  virtual int array_count() const = 0;
+  virtual int tile_capacity() const = 0;
+  virtual std::vector<double> wall_forces() const = 0;
+  SolverState state();
   virtual std::size_t particle_count() const = 0;
   virtual std::size_t occupied_cells() const = 0;
   virtual std::size_t bytes() const = 0;  ///< of particles and grid
@@ -128,6 +149,12 @@ class Solver {
 /// finite.
 void require_stable(std::uint32_t faults, double dissipated, double step);
 
+/// A list of seeds as a source, and a state at hand as one that is stored; they look at what they are of.
+SeedSource source_of(const std::vector<Seed>&);
+StoredState stored(const SolverState&);
+
+std::unique_ptr<Solver> make_solver(const SolverSettings&, const SeedSource&);
+std::unique_ptr<Solver> make_solver(const SolverSettings&, const StoredState&);
 std::unique_ptr<Solver> make_solver(const SolverSettings&, const std::vector<Seed>&);
 std::unique_ptr<Solver> make_solver(const SolverSettings&, const SolverState&);
 

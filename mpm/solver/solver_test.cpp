@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "mpm/solver/kernels.h"
 #include "mpm/solver/test_bodies.h"
 #include "mpm/transfer/shape.h"
+#include "runs/cores.h"
 #include "runs/run_directory.h"
 
 using namespace flowrest;
@@ -317,11 +320,7 @@ TEST(Solver, TheNumberOfThreadsChangesNoBit) {
       states.push_back(solver->state());
       results.push_back(sum);
     };
-    for (const int threads : {1, 2, 3}) run_with(threads);
-      // Among threads already, the system gives it but one of the three.
-#pragma omp parallel num_threads(2)
-#pragma omp single
-    run_with(3);
+    for (const int threads : {1, 2, 3, 11}) run_with(threads);
     for (std::size_t i = 1; i < states.size(); ++i) {
       expect_same_bits(states[0], states[i], name_of(v));
       EXPECT_EQ(results[0].dissipated, results[i].dissipated) << name_of(v);
@@ -329,6 +328,20 @@ TEST(Solver, TheNumberOfThreadsChangesNoBit) {
       EXPECT_EQ(results[0].largest_speed, results[i].largest_speed) << name_of(v);
     }
   }
+}
+
+TEST(Solver, UnlessToldItTakesAsManyThreadsAsAreOursAndItsParticlesCanFeed) {
+  SolverSettings s = concrete({.dimension = 3});
+  const auto threads_of = [&](int edge, int asked) {
+    s.threads = asked;
+    return make_solver(s, block(s, {0, 0, 0}, {edge, edge, edge}, 2))->threads();
+  };
+  setenv("OMP_NUM_THREADS", "1", 1);
+  EXPECT_EQ(threads_of(16, 0), 1);
+  EXPECT_EQ(threads_of(16, 3), 3) << "what the scene asks for counts";
+  unsetenv("OMP_NUM_THREADS");
+  EXPECT_EQ(threads_of(4, 0), 1) << "512 particles";
+  EXPECT_EQ(threads_of(16, 0), std::min(runs::cores(), 32768 / 1500));
 }
 
 TEST(Solver, GoesOnFromItsStateBitForBit) {

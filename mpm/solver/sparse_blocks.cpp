@@ -118,22 +118,16 @@ std::vector<std::uint32_t> SparseBlocks::build(const std::vector<CellIndex>& cel
   return places;
 }
 
-std::vector<std::uint32_t> SparseBlocks::sorted_places() const {
-  std::vector<std::uint32_t> places;
-  for (const auto s : occupied_)
-    for (std::uint32_t i = 0; i < slots_[s].count(); ++i) places.push_back(slots_[s].first + i);
-  return places;
-}
-
-std::vector<CellIndex> SparseBlocks::sorted_cells() const {
+std::vector<CellIndex> SparseBlocks::cells_of(std::uint32_t slot) const {
+  const Slot& s = slots_[slot];
   std::vector<CellIndex> cells;
-  for (const auto s : occupied_)
-    for (int c = 0; c < 64; ++c) {
-      const auto i = static_cast<std::size_t>(c);
-      CellIndex cell = local_coordinates(dimension_, c);
-      for (std::size_t a = 0; a < 3; ++a) cell[a] += slots_[s].block[a] * block_edge;
-      cells.insert(cells.end(), slots_[s].start[i + 1] - slots_[s].start[i], cell);
-    }
+  cells.reserve(s.count());
+  for (int c = 0; c < 64; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    CellIndex cell = local_coordinates(dimension_, c);
+    for (std::size_t a = 0; a < 3; ++a) cell[a] += s.block[a] * block_edge;
+    cells.insert(cells.end(), s.start[i + 1] - s.start[i], cell);
+  }
   return cells;
 }
 
@@ -196,7 +190,7 @@ void SparseBlocks::depart(std::uint32_t from) {
   }
 }
 
-const SparseBlocks::Relocation& SparseBlocks::relocate(const BlockShares& shares) {
+const SparseBlocks::Relocation& SparseBlocks::relocate(const BlockShares& shares, Team& team) {
   relocation_.held.clear();
   relocation_.departing.clear();
   relocation_.departing_end.assign(static_cast<std::size_t>(shares.threads()), 0);
@@ -218,26 +212,47 @@ const SparseBlocks::Relocation& SparseBlocks::relocate(const BlockShares& shares
     lay_out();
   }
   moved_.clear();
-  std::uint32_t fullest = 0;
-  bool emptied = false;
-#pragma omp parallel num_threads(shares.threads()) reduction(max : fullest) reduction(|| : emptied)
-  {
-    std::vector<std::uint32_t> links;
-#pragma omp for schedule(static, 1)
-    for (int share = 0; share < shares.threads(); ++share)
-      for (const auto slot : touched_) {
-        Slot& s = slots_[slot];
-        if (shares.owner(s.arena) != share) continue;
-        plan_reordering(s, links);
-        s.touched = false;
-        emptied = emptied || s.count() == 0;
-        for (std::size_t c = 0; c < 64; ++c) fullest = std::max(fullest, s.start[c + 1] - s.start[c]);
-      }
-  }
-  fullest_cell_ = std::max<std::size_t>(fullest_cell_, fullest);
-  relocation_.other_blocks = relocation_.other_blocks || emptied;
+  plan_reorderings(shares, team);
   if (relocation_.other_blocks) refresh_neighbours();
   return relocation_;
+}
+
+/// Every thread plans for those of the touched blocks that are its own.
+void SparseBlocks::plan_reorderings(const BlockShares& shares, Team& team) {
+  const auto threads = static_cast<std::size_t>(shares.threads());
+  if (planners_.size() != threads) {
+    planners_.resize(threads);
+    touched_shares_ = BlockShares(shares.threads());
+  }
+  const auto owner_of = [&](std::uint32_t slot) {
+    return static_cast<std::size_t>(shares.owner(slots_[slot].arena));
+  };
+  std::vector<std::uint32_t> ends(threads, 0);
+  for (const auto slot : touched_) ++ends[owner_of(slot)];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  touched_of_threads_.resize(touched_.size());
+  std::vector<std::uint32_t> next(threads, 0);
+  std::copy(ends.begin(), ends.end() - 1, next.begin() + 1);
+  for (const auto slot : touched_) touched_of_threads_[next[owner_of(slot)]++] = slot;
+  touched_shares_.share_out(std::move(ends));
+
+  for (Planner& planner : planners_) {
+    planner.fullest = 0;
+    planner.emptied = false;
+  }
+  team.run(touched_shares_, [&](std::uint32_t i, int thread) {
+    Slot& s = slots_[touched_of_threads_[i]];
+    Planner& planner = planners_[static_cast<std::size_t>(thread)];
+    plan_reordering(s, planner.links);
+    s.touched = false;
+    planner.emptied = planner.emptied || s.count() == 0;
+    for (std::size_t c = 0; c < 64; ++c)
+      planner.fullest = std::max(planner.fullest, s.start[c + 1] - s.start[c]);
+  });
+  for (const Planner& planner : planners_) {
+    fullest_cell_ = std::max<std::size_t>(fullest_cell_, planner.fullest);
+    relocation_.other_blocks = relocation_.other_blocks || planner.emptied;
+  }
 }
 
 void SparseBlocks::add_piece(Reordering& out, std::uint32_t from, std::uint32_t to, std::uint32_t count) {

@@ -7,6 +7,7 @@
 
 #include "mpm/solver/block_shares.h"
 #include "mpm/solver/layout.h"
+#include "mpm/solver/team.h"
 
 namespace flowrest::mpm {
 
@@ -28,10 +29,8 @@ class SparseBlocks {
 
   /// Places that the particles' arrays need to have.
   std::size_t room() const { return room_; }
-  /// Particles' places in the order of (block, cell, place in the cell).
-  std::vector<std::uint32_t> sorted_places() const;
-  /// Their cells, in the same order.
-  std::vector<CellIndex> sorted_cells() const;
+  /// The cells of a block's particles, in their order.
+  std::vector<CellIndex> cells_of(std::uint32_t slot) const;
 
   /// Where the particles of a block go that the last step's kernels reported in its mover list. Blocks may
   /// be asked side by side, each once before relocate().
@@ -61,7 +60,7 @@ class SparseBlocks {
     bool laid_out_anew = false;
     bool other_blocks = false;  ///< are occupied now
   };
-  const Relocation& relocate(const BlockShares&);
+  const Relocation& relocate(const BlockShares&, Team&);
 
   /// What the arrays still owe to a block, by index in it: `pieces` that change their place, in the order of
   /// where they go, with a hole for each of the `arrivals`, which are among those set aside.
@@ -135,6 +134,7 @@ class SparseBlocks {
   void touch(std::uint32_t slot);
   void plan_mover(Slot&, const Mover&) const;
   void depart(std::uint32_t from);
+  void plan_reorderings(const BlockShares&, Team&);
   static void plan_reordering(Slot&, std::vector<std::uint32_t>& links);
   static void add_piece(Reordering&, std::uint32_t from, std::uint32_t to, std::uint32_t count);
   // block_places.cpp
@@ -160,6 +160,15 @@ class SparseBlocks {
   std::unordered_map<std::uint64_t, std::uint32_t> slot_of_block_;
   std::vector<std::uint32_t> occupied_;  ///< ascending in block coordinates
   std::vector<std::uint32_t> touched_;
+  std::vector<std::uint32_t> touched_of_threads_;  ///< the same, those of each thread together
+  BlockShares touched_shares_;
+  /// What a thread finds while it plans, and its room to do so.
+  struct alignas(64) Planner {
+    std::vector<std::uint32_t> links;
+    std::uint32_t fullest = 0;
+    bool emptied = false;
+  };
+  std::vector<Planner> planners_;
   Relocation relocation_;
   std::uint32_t room_ = 0;                ///< places of the arrays
   std::vector<std::uint32_t> in_memory_;  ///< blocks with places, which reach to the next one's

@@ -87,13 +87,17 @@ struct Numbered {
 void expect_agreement(SparseBlocks& blocks, const Numbered& numbers, const BruteForce& truth, int round) {
   std::vector<std::uint32_t> order;
   std::vector<CellIndex> cells;
-  for (const auto place : blocks.sorted_places()) {
-    ASSERT_LT(place, blocks.room());
-    order.push_back(numbers.at(place));
-    cells.push_back(truth.cells[order.back()]);
+  for (const auto slot : blocks.occupied()) {
+    const BlockView view = blocks.view(slot);
+    cells.clear();
+    for (std::uint32_t i = 0; i < view.start[power(4, truth.dimension)]; ++i) {
+      ASSERT_LT(view.first + i, blocks.room());
+      order.push_back(numbers.at(view.first + i));
+      cells.push_back(truth.cells[order.back()]);
+    }
+    ASSERT_EQ(blocks.cells_of(slot), cells) << "round " << round;
   }
   ASSERT_EQ(order, truth.order) << "round " << round;
-  ASSERT_EQ(blocks.sorted_cells(), cells) << "round " << round;
   std::map<Block, std::uint32_t> slots;
   Block before{};
   bool first = true;
@@ -155,7 +159,7 @@ void expect_agreement(SparseBlocks& blocks, const Numbered& numbers, const Brute
 }
 
 BlockShares shared_out(int threads, std::size_t blocks) {
-  BlockShares shares(threads, 1);
+  BlockShares shares(threads);
   std::vector<std::uint32_t> ends;
   for (int t = 1; t <= threads; ++t)
     ends.push_back(static_cast<std::uint32_t>(blocks * static_cast<std::size_t>(t * t) /
@@ -201,7 +205,8 @@ Outgrown wander(int dimension, const std::array<AxisBounds, 3>& bounds, const st
       }
     }
     for (const auto slot : blocks.occupied()) blocks.plan_movers(slot);
-    const auto& plan = blocks.relocate(shared_out(1 + round % 3, blocks.occupied().size()));
+    Team team(1 + round % 3);
+    const auto& plan = blocks.relocate(shared_out(team.threads(), blocks.occupied().size()), team);
     std::set<std::pair<std::uint32_t, int>> reported;
     for (const auto& h : plan.held) {
       const std::uint32_t p = numbers.at(h.place);
@@ -210,7 +215,7 @@ Outgrown wander(int dimension, const std::array<AxisBounds, 3>& bounds, const st
     }
     outgrown.laid_out_anew += plan.laid_out_anew;
     outgrown.made_way += !plan.laid_out_anew && !plan.new_places.empty();
-    numbers.particles.make_way(blocks, plan);
+    numbers.particles.make_way(blocks, plan, team);
     std::vector<double> taken;
     for (const auto slot : blocks.occupied()) numbers.particles.settle(blocks.reordering(slot), taken);
     EXPECT_EQ(reported, truth.move(shifts)) << "round " << round;

@@ -107,6 +107,13 @@ inline std::vector<Seed> restless_block(const SolverSettings& s, Random& random,
   return seeds;
 }
 
+/// A state wherever it lies, brought into memory.
+inline SolverState all_of(const StoredState& stored) {
+  SolverState all{stored.cells, {}, stored.tile_capacity, stored.wall_forces};
+  for (int k = 0; k < stored.array_count; ++k) all.arrays.push_back(stored.array(k));
+  return all;
+}
+
 /// A solver's state with its arrays by name.
 struct Open {
   SolverState state;
