@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 
 #include "mpm/output/hdf5_file.h"
 #include "runs/run_directory.h"
@@ -45,31 +46,43 @@ void each_member(State& s, Use use) {
 
 std::filesystem::path file_in(const std::filesystem::path& directory) { return directory / "checkpoint.h5"; }
 
+std::string name_of_array(int array) { return fmt::format("/array{:02}", array); }
+
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& directory, const Checkpoint& c) {
+void write_checkpoint(const std::filesystem::path& directory, const RunState& run, Solver& solver,
+                      const std::string& scene, const std::vector<double>& noise_meter) {
   Hdf5File file = Hdf5File::create(file_in(directory));
-  std::vector<double> run;
-  each_member(c.run, [&](const double& v) { run.push_back(v); });
-  file.write("/run", run);
-  file.write("/noise_meter", c.noise_meter);
-  file.attribute("/", "scene", c.scene);
-  std::vector<std::int32_t> cells;
-  for (const auto& cell : c.solver.cells) cells.insert(cells.end(), cell.begin(), cell.end());
-  file.write("/cells", cells, 3);
-  const std::array<std::int32_t, 3> sizes = {c.solver.tile_capacity,
-                                             static_cast<std::int32_t>(c.solver.arrays.size()),
-                                             static_cast<std::int32_t>(c.solver.wall_forces.size())};
-  file.write("/sizes", sizes);
-  for (std::size_t k = 0; k < c.solver.arrays.size(); ++k)
-    file.write(fmt::format("/array{:02}", k), c.solver.arrays[k]);
-  if (!c.solver.wall_forces.empty()) file.write("/wall_forces", c.solver.wall_forces);
+  std::vector<double> values;
+  each_member(run, [&](const double& v) { values.push_back(v); });
+  file.write("/run", values);
+  file.write("/noise_meter", noise_meter);
+  file.attribute("/", "scene", scene);
+  const std::size_t particles = solver.particle_count();
+  Hdf5Rows<std::int32_t> cells(file, "/cells", particles, 3);
+  solver.visit_cells([&](std::span<const CellIndex> some) {
+    for (const CellIndex& cell : some)
+      for (const std::int32_t c : cell) cells.add(c);
+  });
+  cells.finish();
+  const std::vector<double> forces = solver.wall_forces();
+  file.write("/sizes", std::array<std::int32_t, 3>{solver.tile_capacity(), solver.array_count(),
+                                                   static_cast<std::int32_t>(forces.size())});
+  for (int k = 0; k < solver.array_count(); ++k) {
+    Hdf5Rows<double> array(file, name_of_array(k), particles);
+    solver.visit_array(k, [&](std::span<const double> some) {
+      for (const double v : some) array.add(v);
+    });
+    array.finish();
+  }
+  if (!forces.empty()) file.write("/wall_forces", forces);
   file.commit();
 }
 
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory) {
   if (!std::filesystem::exists(file_in(directory))) return std::nullopt;
-  const Hdf5File file = Hdf5File::open(file_in(directory));
+  const auto opened = std::make_shared<const Hdf5File>(Hdf5File::open(file_in(directory)));
+  const Hdf5File& file = *opened;
   Checkpoint c;
   const std::vector<double> run = file.read_doubles("/run");
   std::size_t next = 0;
@@ -91,11 +104,11 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory
   const auto sizes = file.read_integers("/sizes");
   if (sizes.size() != 3) throw damaged("lacks its sizes");
   c.solver.tile_capacity = sizes[0];
-  for (int k = 0; k < sizes[1]; ++k) {
-    c.solver.arrays.push_back(file.read_doubles(fmt::format("/array{:02}", k)));
-    if (c.solver.arrays.back().size() != c.solver.cells.size())
+  for (int k = 0; k < sizes[1]; ++k)
+    if (file.size_of(name_of_array(k)) != c.solver.cells.size())
       throw damaged(fmt::format("array {} has the wrong length", k));
-  }
+  c.solver.array_count = sizes[1];
+  c.solver.array = [opened](int k) { return opened->read_doubles(name_of_array(k)); };
   if (sizes[2] > 0) c.solver.wall_forces = file.read_doubles("/wall_forces");
   if (std::ssize(c.solver.wall_forces) != sizes[2]) throw damaged("lacks its walls' forces");
   return c;

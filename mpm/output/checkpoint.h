@@ -33,13 +33,14 @@ struct RunState {
 
 struct Checkpoint {
   RunState run;
-  SolverState solver;
+  StoredState solver;               ///< its arrays are read from the file when they are asked for
   std::string scene;                ///< resolved TOML
   std::vector<double> noise_meter;  ///< its state
 };
 
-/// Writes `directory`/checkpoint.h5 atomically. @throws runs::RunError
-void write_checkpoint(const std::filesystem::path& directory, const Checkpoint&);
+/// Writes `directory`/checkpoint.h5 atomically, the rest of it as in Checkpoint. @throws runs::RunError
+void write_checkpoint(const std::filesystem::path& directory, const RunState&, Solver&,
+                      const std::string& scene, const std::vector<double>& noise_meter);
 /// @throws runs::RunError where the file is damaged; nullopt where there is none.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory);
 

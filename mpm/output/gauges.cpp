@@ -28,11 +28,25 @@ double quantile(std::vector<Weighted>& values, double share) {
   return values.empty() ? runs::nothing : values.back().first;
 }
 
+/// The value of particles (`value_of(batch, particle)`, of their motion) that `share` of the mass does not
+/// exceed. Looked at alone, so that no more than one list of all particles is in memory at a time.
+template <class ValueOf>
+double quantile_of_motion(Solver& solver, double share, const ValueOf& value_of) {
+  std::vector<Weighted> values;
+  values.reserve(solver.particle_count());
+  solver.visit_motion([&](const ParticleBatch& b) {
+    for (std::size_t i = 0; i < b.count; ++i) values.emplace_back(value_of(b, i), b.mass[i]);
+  });
+  return quantile(values, share);
+}
+
 /// Sums common to every kind of scene.
 class Sums {
  public:
-  Sums(const scenes::Scene& scene, double factor)
-      : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor) {}
+  Sums(const scenes::Scene& scene, double factor, const Solver& solver)
+      : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor) {
+    rates_.reserve(solver.particle_count());
+  }
 
   void add(const ParticleBatch& b, std::size_t vertical) {
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -93,43 +107,44 @@ Measures Gauges::measure(Solver& solver) const {
 }
 
 Measures Gauges::measure_slump(Solver& solver) const {
-  Sums sums(scene_, factor_);
-  std::vector<Weighted> radii;
-  std::vector<std::pair<double, double>> volumes;
   const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
   double farthest = 0.0;
+  const auto radius_of = [&](const ParticleBatch& b, std::size_t i) {
+    return vertical == 2 ? std::hypot(b.position[0][i], b.position[1][i]) : std::abs(b.position[0][i]);
+  };
+  const double spread_mass_995 =
+      2.0 * quantile_of_motion(solver, 0.995, [&](const ParticleBatch& b, std::size_t i) {
+        const double radius = radius_of(b, i);
+        farthest = std::max(farthest, radius);
+        return radius;
+      });
+  Sums sums(scene_, factor_, solver);
+  // A plane column's depth is volume per length and unit width on either side of the middle.
+  const bool plane = scene_.geometry.dimension == scenes::Dimension::plane;
+  std::vector<double> depth(plane ? static_cast<std::size_t>(farthest / cell_) + 2 : 0, 0.0);
+  runs::RadialDepthAccumulator rings(cell_, farthest + 2.0 * cell_);
   solver.visit([&](const ParticleBatch& b) {
     sums.add(b, vertical);
     for (std::size_t i = 0; i < b.count; ++i) {
-      const double radius =
-          vertical == 2 ? std::hypot(b.position[0][i], b.position[1][i]) : std::abs(b.position[0][i]);
-      farthest = std::max(farthest, radius);
-      radii.emplace_back(radius, b.mass[i]);
-      volumes.emplace_back(radius, b.volume[i]);
+      const double radius = radius_of(b, i);
+      if (plane)
+        depth[static_cast<std::size_t>(radius / cell_)] += b.volume[i] / cell_;
+      else
+        rings.add(radius, factor_ * b.volume[i]);
     }
   });
   Measures m = sums.finish();
   m.farthest = farthest;
-  runs::RadialDepthAccumulator rings(cell_, farthest + 2.0 * cell_);
-  if (scene_.geometry.dimension == scenes::Dimension::plane) {
-    // A plane column's depth is volume per length and unit width on either side of the middle.
-    const auto bins = static_cast<std::size_t>(farthest / cell_) + 2;
-    std::vector<double> depth(bins, 0.0);
-    for (const auto& [x, volume] : volumes) depth[static_cast<std::size_t>(x / cell_)] += volume / cell_;
-    m.value = depth;
-    for (std::size_t i = 0; i < bins; ++i) m.coordinate.push_back((static_cast<double>(i) + 0.5) * cell_);
-  } else {
-    for (const auto& [radius, volume] : volumes) rings.add(radius, factor_ * volume);
-    const runs::RadialDepth depth = rings.depth();
-    m.coordinate = depth.centres();
-    m.value = depth.depth;
-  }
-  m.spread_mass_995 = 2.0 * quantile(radii, 0.995);
+  m.spread_mass_995 = spread_mass_995;
+  m.coordinate = plane ? std::vector<double>{} : rings.depth().centres();
+  m.value = plane ? depth : rings.depth().depth;
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    m.coordinate.push_back((static_cast<double>(i) + 0.5) * cell_);
   return m;
 }
 
 Measures Gauges::measure_duct(Solver& solver) const {
-  Sums sums(scene_, factor_);
+  Sums sums(scene_, factor_, solver);
   // One bin a lattice row, so that a lattice's rows are seen one by one and not smeared.
   const double width = cell_ / scene_.mpm.particles_per_cell.back();
   const auto bins = static_cast<std::size_t>(std::lround(scene_.duct().height / width));
@@ -153,7 +168,9 @@ Measures Gauges::measure_duct(Solver& solver) const {
 }
 
 Measures Gauges::measure_channel(Solver& solver) const {
-  Sums sums(scene_, factor_);
+  const double front_mass_995 = quantile_of_motion(
+      solver, 0.995, [](const ParticleBatch& b, std::size_t i) { return b.position[0][i]; });
+  Sums sums(scene_, factor_, solver);
   const bool box = scene_.kind == scenes::Kind::l_box;
   const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
   const double begin = box ? scene_.l_box().reservoir_length : 0.0;
@@ -162,13 +179,11 @@ Measures Gauges::measure_channel(Solver& solver) const {
   const auto bins = static_cast<std::size_t>(std::max(1.0, std::round(length / cell_)));
   const double spacing = length / static_cast<double>(bins);
   std::vector<double> volume(bins, 0.0);
-  std::vector<Weighted> places;
   const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
   solver.visit([&](const ParticleBatch& b) {
     sums.add(b, vertical);
     for (std::size_t i = 0; i < b.count; ++i) {
       const double x = b.position[0][i];
-      places.emplace_back(x, b.mass[i]);
       volume[static_cast<std::size_t>(std::clamp(x / spacing, 0.0, static_cast<double>(bins - 1)))] +=
           b.volume[i];
     }
@@ -179,7 +194,7 @@ Measures Gauges::measure_channel(Solver& solver) const {
     m.value.push_back(factor_ * volume[i] / (spacing * width));
   }
   m.front = runs::front(m.coordinate, m.value, length, scene_.gauges.front_depth) - begin;
-  m.front_mass_995 = quantile(places, 0.995) - begin;
+  m.front_mass_995 = front_mass_995 - begin;
   const double over = scene_.gauges.end_length;
   m.end_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::last, over);
   m.start_height = runs::depth_at_end(m.value, spacing, runs::ChannelEnd::first, over);
@@ -188,7 +203,7 @@ Measures Gauges::measure_channel(Solver& solver) const {
 
 Measures Gauges::measure_v_funnel(Solver& solver) const {
   const auto& g = scene_.v_funnel();
-  Sums sums(scene_, factor_);
+  Sums sums(scene_, factor_, solver);
   const auto up = static_cast<std::size_t>(vertical_axis(scene_));
   const bool full = scene_.geometry.dimension == scenes::Dimension::full, space = up == 2;
   // Lines of sight through the outlet, one a cell, and the profile over the whole width.

@@ -84,14 +84,20 @@ void Hdf5File::group(const std::string& path) {
   if (!made.valid()) no_room("cannot hold the group " + path);
 }
 
+hid_t Hdf5File::make_dataset(const std::string& path, hid_t type, std::size_t rows, std::size_t columns) {
+  const hsize_t size[2] = {rows, columns};
+  const Handle space(H5Screate_simple(columns ? 2 : 1, size, nullptr), H5Sclose);
+  const hid_t set = H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (set < 0) refuse_dataset(path);
+  return set;
+}
+
+void Hdf5File::refuse_dataset(const std::string& path) const { no_room("cannot hold the dataset " + path); }
+
 void Hdf5File::write(const std::string& path, hid_t type, const void* data, std::size_t count,
                      std::size_t columns) {
-  const hsize_t size[2] = {columns ? count / columns : count, columns};
-  const Handle space(H5Screate_simple(columns ? 2 : 1, size, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose);
-  if (!set.valid() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-    no_room("cannot hold the dataset " + path);
+  const Handle set(make_dataset(path, type, columns ? count / columns : count, columns), H5Dclose);
+  if (H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) refuse_dataset(path);
 }
 
 void Hdf5File::write(const std::string& path, std::span<const double> v, std::size_t columns) {
@@ -169,6 +175,13 @@ std::string Hdf5File::read_text(const std::string& group, const std::string& nam
   return text;
 }
 
+std::size_t Hdf5File::size_of(const std::string& path) const {
+  const Handle set(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set.valid()) fail("the dataset " + path + " is missing or unreadable");
+  const Handle space(H5Dget_space(set), H5Sclose);
+  return static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+}
+
 void Hdf5File::commit() {
   const herr_t closed = H5Fclose(file_);
   file_ = -1;
@@ -180,5 +193,54 @@ void Hdf5File::commit() {
   std::filesystem::rename(temporary_, path_, error);
   if (error) runs::cannot_be_written(path_, error.value());
 }
+
+namespace {
+
+hid_t type_of(double) { return H5T_NATIVE_DOUBLE; }
+hid_t type_of(float) { return H5T_NATIVE_FLOAT; }
+hid_t type_of(std::int64_t) { return H5T_NATIVE_INT64; }
+hid_t type_of(std::int32_t) { return H5T_NATIVE_INT32; }
+hid_t type_of(std::uint8_t) { return H5T_NATIVE_UINT8; }
+
+}  // namespace
+
+template <class T>
+Hdf5Rows<T>::Hdf5Rows(Hdf5File& file, std::string path, std::size_t rows, std::size_t columns)
+    : file_(file),
+      path_(std::move(path)),
+      columns_(columns),
+      dataset_(file.make_dataset(path_, type_of(T()), rows, columns)) {}
+
+template <class T>
+Hdf5Rows<T>::~Hdf5Rows() {
+  if (dataset_ >= 0) H5Dclose(dataset_);
+}
+
+template <class T>
+void Hdf5Rows<T>::write_out() {
+  if (waiting_.empty()) return;
+  const hsize_t first[2] = {written_, 0};
+  const hsize_t size[2] = {columns_ ? waiting_.size() / columns_ : waiting_.size(), columns_};
+  const Handle in_file(H5Dget_space(dataset_), H5Sclose);
+  const Handle in_memory(H5Screate_simple(columns_ ? 2 : 1, size, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(in_file, H5S_SELECT_SET, first, nullptr, size, nullptr) < 0 ||
+      H5Dwrite(dataset_, type_of(T()), in_memory, in_file, H5P_DEFAULT, waiting_.data()) < 0)
+    file_.refuse_dataset(path_);
+  written_ += size[0];
+  waiting_.clear();
+}
+
+template <class T>
+void Hdf5Rows<T>::finish() {
+  write_out();
+  const herr_t closed = H5Dclose(std::exchange(dataset_, -1));
+  if (closed < 0) file_.refuse_dataset(path_);
+}
+
+template class Hdf5Rows<double>;
+template class Hdf5Rows<float>;
+template class Hdf5Rows<std::int64_t>;
+template class Hdf5Rows<std::int32_t>;
+template class Hdf5Rows<std::uint8_t>;
 
 }  // namespace flowrest::mpm

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -34,6 +35,8 @@ class Hdf5File {
 
   std::vector<double> read_doubles(const std::string& path) const;
   std::vector<std::int32_t> read_integers(const std::string& path) const;
+  /// Numbers in a dataset.
+  std::size_t size_of(const std::string& path) const;
   std::string read_text(const std::string& group, const std::string& name) const;
 
   /// Puts a created file in place of what stood there, atomically.
@@ -41,12 +44,45 @@ class Hdf5File {
 
  private:
   Hdf5File() = default;
+  template <class T>
+  friend class Hdf5Rows;
   void write(const std::string& path, hid_t type, const void* data, std::size_t count, std::size_t columns);
+  hid_t make_dataset(const std::string& path, hid_t type, std::size_t rows, std::size_t columns);
+  [[noreturn]] void refuse_dataset(const std::string& path) const;
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void no_room(const std::string& what) const;
 
   std::filesystem::path path_, temporary_;
   hid_t file_ = -1;
+};
+
+/// A dataset that is written from its first row to its last, in pieces of any size; so that no more than a
+/// piece of it need be in memory. Its file must stay where it is, and be committed after finish().
+template <class T>
+class Hdf5Rows {
+ public:
+  /// `columns` 0 makes it one-dimensional.
+  Hdf5Rows(Hdf5File& file, std::string path, std::size_t rows, std::size_t columns = 0);
+  ~Hdf5Rows();
+  Hdf5Rows(const Hdf5Rows&) = delete;
+  Hdf5Rows& operator=(const Hdf5Rows&) = delete;
+
+  void add(T value) {
+    waiting_.push_back(value);
+    if (waiting_.size() == rows_at_once * std::max<std::size_t>(1, columns_)) write_out();
+  }
+  /// After the last row.
+  void finish();
+
+ private:
+  static constexpr std::size_t rows_at_once = 1 << 14;
+  void write_out();
+
+  Hdf5File& file_;
+  std::string path_;
+  std::size_t columns_, written_ = 0;
+  std::vector<T> waiting_;
+  hid_t dataset_;
 };
 
 }  // namespace flowrest::mpm

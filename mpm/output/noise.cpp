@@ -104,6 +104,7 @@ std::string words(const NoiseSeen& seen, const std::string& what) {
 
 std::vector<CellMotion> motion_of_cells(Solver& solver, int dimension, double cell) {
   std::vector<CellMotion> cells;
+  cells.reserve(solver.occupied_cells());
   solver.visit_motion([&](const ParticleBatch& batch) {
     for (std::size_t begin = 0, end = 0; begin < batch.count; begin = end) {
       end = end_of_cell(batch, begin, dimension, cell);
@@ -178,6 +179,7 @@ bool NoiseMeter::add(Solver& solver, double step) {
   if (moment + 1 < moments_.size()) return false;
   noise_ = noise_within_cells(solver, dimension_, cell_);
   noise_.between_steps = alternation(moments_, steps_[1], steps_[2]);
+  moments_ = {};
   return true;
 }
 

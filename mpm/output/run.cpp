@@ -95,7 +95,7 @@ class MpmRun {
         noise_(settings_.dimension, settings_.cell),
         factor_(whole_body_factor(scene)),
         // Before anything is written: seeding may need a program that is missing.
-        solver_(checkpoint ? make(checkpoint->solver) : make(seed_particles(scene))),
+        solver_(checkpoint ? make(checkpoint->solver) : make(seeds_of(scene))),
         writer_(open()),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.last_snapshot : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
@@ -342,8 +342,7 @@ class MpmRun {
     state_.cpu = runs::cpu_seconds() - cpu_begin_;
     state_.wall = seconds_now() - wall_begin_;
     state_.stages = stage_times();
-    write_checkpoint(options_.directory,
-                     {state_, solver_->state(), scenes::resolved_toml(scene_), noise_.state()});
+    write_checkpoint(options_.directory, state_, *solver_, scenes::resolved_toml(scene_), noise_.state());
   }
 
   /// Of the whole run.
@@ -596,13 +595,17 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
         "--resume: --set, --json, --quiet",
         options.directory.string()));
   if (leg.method == Method::fast) leg.instruction_set = instruction_set_of(earlier, options.instruction_set);
-  if (const auto checkpoint = read_checkpoint(options.directory)) {
+  if (auto checkpoint = read_checkpoint(options.directory)) {
     check_suits(*checkpoint, earlier, scene);
-    const RunState& state = checkpoint->run;
+    const RunState state = checkpoint->run;
     const auto open = [&] {
       return runs::RunWriter::resume(std::move(lock), scene, {state.time, state.time, state.last_profile});
     };
-    return within_memory(scene, [&] { return MpmRun(scene, leg, checkpoint, open).run(); });
+    return within_memory(scene, [&] {
+      MpmRun resumed(scene, leg, checkpoint, open);
+      checkpoint.reset();  // the solver has taken it up
+      return resumed.run();
+    });
   }
   if (earlier.finished())
     throw runs::RunError(fmt::format(

@@ -7,6 +7,7 @@
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/gauges.h"
 #include "mpm/output/test_runs.h"
+#include "mpm/solver/test_bodies.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -71,7 +72,7 @@ void expect_same_run(const fs::path& one, const fs::path& other) {
   EXPECT_EQ(a->run.dissipated, b->run.dissipated);
   EXPECT_EQ(a->run.calm_since, b->run.calm_since);
   EXPECT_EQ(a->solver.cells, b->solver.cells);
-  EXPECT_EQ(a->solver.arrays, b->solver.arrays);
+  EXPECT_EQ(all_of(a->solver).arrays, all_of(b->solver).arrays);
   EXPECT_EQ(a->run.histories, b->run.histories);
   EXPECT_EQ(a->run.last_profile, b->run.last_profile);
   EXPECT_EQ(a->run.last_snapshot, b->run.last_snapshot);
@@ -538,31 +539,39 @@ TEST_F(MpmRun, ADamagedCheckpointIsAnErrorThatNamesIt) {
 }
 
 TEST_F(MpmRun, ACheckpointReadsBackAsItWasWritten) {
-  Checkpoint written;
-  written.run.time = 1.0 / 3.0;
-  written.run.steps = 12345.0;
-  written.run.calm_since = -1.0;
-  written.run.checkpoints = 7.0;
-  written.run.stages.nodes = 0.25;
-  written.noise_meter = {2.0, 0.1, 0.2, 0.3};
-  written.scene = "title = \"ä\"\n";
-  written.solver.cells = {{1, -2, 3}, {-400000, 5, 6}};
-  written.solver.arrays = {{0.1, 1e-300}, {-0.0, 1e300}};
-  written.solver.tile_capacity = 128;
-  write_checkpoint(folder, written);
+  RunState written;
+  written.time = 1.0 / 3.0;
+  written.steps = 12345.0;
+  written.calm_since = -1.0;
+  written.checkpoints = 7.0;
+  written.stages.nodes = 0.25;
+  const std::vector<double> noise_meter = {2.0, 0.1, 0.2, 0.3};
+  const std::string scene = "title = \"ä\"\n";
+  const SolverSettings s = concrete({.dimension = 3});
+  // More particles than are written at once, some of them far from the others.
+  auto seeds = block(s, {0, 0, 0}, {16, 16, 16}, 2);
+  for (std::size_t p = 0; p < seeds.size() / 2; ++p) seeds[p].cell[0] -= 400000;
+  Open open(*make_solver(s, seeds), s);
+  open.velocity(0)[0] = -0.0;
+  open.velocity(1)[1] = 1e-300;
+  open.velocity(2).back() = 1e300;
+  open.state.tile_capacity = 128;
+  const auto solver = make_solver(s, open.state);
+  write_checkpoint(folder, written, *solver, scene, noise_meter);
   const auto read = read_checkpoint(folder);
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->run.time, written.run.time);
-  EXPECT_EQ(read->run.steps, written.run.steps);
-  EXPECT_EQ(read->run.calm_since, written.run.calm_since);
-  EXPECT_EQ(read->run.checkpoints, written.run.checkpoints);
+  EXPECT_EQ(read->run.time, written.time);
+  EXPECT_EQ(read->run.steps, written.steps);
+  EXPECT_EQ(read->run.calm_since, written.calm_since);
+  EXPECT_EQ(read->run.checkpoints, written.checkpoints);
   EXPECT_EQ(read->run.stages.nodes, 0.25);
-  EXPECT_EQ(read->noise_meter, written.noise_meter);
-  EXPECT_EQ(read->scene, written.scene);
-  EXPECT_EQ(read->solver.cells, written.solver.cells);
-  EXPECT_EQ(read->solver.arrays, written.solver.arrays);
-  EXPECT_TRUE(std::signbit(read->solver.arrays[1][0]));
-  EXPECT_EQ(read->solver.tile_capacity, 128);
+  EXPECT_EQ(read->noise_meter, noise_meter);
+  EXPECT_EQ(read->scene, scene);
+  Open again(all_of(read->solver), s);
+  EXPECT_EQ(again.state.cells, open.state.cells);
+  EXPECT_EQ(again.state.arrays, open.state.arrays);
+  EXPECT_TRUE(std::signbit(again.velocity(0)[0]));
+  EXPECT_EQ(again.state.tile_capacity, 128);
 }
 
 TEST_F(MpmRun, MaterialThatReachesTheDomainsEdgeFailsAndKeepsItsData) {

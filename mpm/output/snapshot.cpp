@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "mpm/output/averaged_pressure.h"
 #include "mpm/output/hdf5_file.h"
@@ -18,8 +18,24 @@ namespace {
 
 constexpr std::uint8_t vtk_vertex = 1;
 
-void append(std::vector<float>& to, const std::vector<double>& from) {
-  for (const double v : from) to.push_back(static_cast<float>(v));
+void add(Hdf5Rows<float>& to, const std::vector<double>& values) {
+  for (const double v : values) to.add(static_cast<float>(v));
+}
+
+/// The cells of an unstructured grid whose points are its cells.
+void write_vertices(Hdf5File& file, std::size_t count) {
+  Hdf5Rows<std::int64_t> connectivity(file, "/VTKHDF/Connectivity", count);
+  Hdf5Rows<std::int64_t> offsets(file, "/VTKHDF/Offsets", count + 1);
+  Hdf5Rows<std::uint8_t> types(file, "/VTKHDF/Types", count);
+  for (std::size_t i = 0; i < count; ++i) {
+    connectivity.add(static_cast<std::int64_t>(i));
+    offsets.add(static_cast<std::int64_t>(i));
+    types.add(vtk_vertex);
+  }
+  offsets.add(static_cast<std::int64_t>(count));
+  connectivity.finish();
+  offsets.finish();
+  types.finish();
 }
 
 }  // namespace
@@ -52,29 +68,10 @@ std::string SnapshotWriter::name_of(std::size_t number) { return fmt::format("pa
 
 void SnapshotWriter::write(double time, Solver& solver) {
   if (!series_.empty() && series_.back().second == time) return;
-  std::vector<float> points, velocity, rate, stress, pressure, raw_pressure, volume, flocculation;
   AveragedPressure averaged(dimension_, cell_);
   solver.visit([&](const ParticleBatch& batch) { averaged.add(batch); });
-  solver.visit([&](const ParticleBatch& batch) {
-    for (std::size_t i = 0; i < batch.count; ++i)
-      for (auto [to, from] : {std::pair{&points, &batch.position}, std::pair{&velocity, &batch.velocity}}) {
-        const auto at = [&](std::size_t axis) { return static_cast<float>((*from)[axis][i]); };
-        // A slump's section stands upright, so that it can be laid over a three-dimensional run.
-        const bool upright = dimension_ == 2 && !duct_;
-        to->insert(to->end(), {at(0), upright ? 0.0f : at(1), upright ? at(1) : at(2)});
-      }
-    append(rate, batch.rate);
-    append(stress, batch.shear_stress);
-    append(pressure, averaged.at(batch));
-    append(raw_pressure, batch.raw_pressure);
-    append(volume, batch.volume);
-    append(flocculation, batch.flocculation);
-  });
-  const auto count = static_cast<std::int64_t>(rate.size());
-  std::vector<std::int64_t> connectivity(rate.size()), offsets(rate.size() + 1);
-  std::iota(connectivity.begin(), connectivity.end(), 0);
-  std::iota(offsets.begin(), offsets.end(), 0);
-  const std::vector<std::uint8_t> types(rate.size(), vtk_vertex);
+  const std::size_t count = solver.particle_count();
+  const auto count_stored = static_cast<std::int64_t>(count);
 
   runs::make_folder(directory_);
   const std::string name = name_of(series_.size());
@@ -83,19 +80,38 @@ void SnapshotWriter::write(double time, Solver& solver) {
   file.attribute("/VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
   file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
   for (const char* size : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
-    file.write(fmt::format("/VTKHDF/{}", size), std::span(&count, 1));
-  file.write("/VTKHDF/Points", points, 3);
-  file.write("/VTKHDF/Connectivity", connectivity);
-  file.write("/VTKHDF/Offsets", offsets);
-  file.write("/VTKHDF/Types", types);
+    file.write(fmt::format("/VTKHDF/{}", size), std::span(&count_stored, 1));
+  write_vertices(file, count);
   file.group("/VTKHDF/PointData");
-  file.write("/VTKHDF/PointData/velocity", velocity, 3);
-  file.write("/VTKHDF/PointData/shear_rate", rate);
-  file.write("/VTKHDF/PointData/shear_stress", stress);
-  file.write("/VTKHDF/PointData/pressure", pressure);
-  file.write("/VTKHDF/PointData/raw_pressure", raw_pressure);
-  file.write("/VTKHDF/PointData/volume", volume);
-  if (!flocculation.empty()) file.write("/VTKHDF/PointData/flocculation", flocculation);
+  const auto rows = [&](const char* of, std::size_t columns = 0) {
+    return std::make_unique<Hdf5Rows<float>>(file, std::string("/VTKHDF/") + of, count, columns);
+  };
+  const auto points = rows("Points", 3), velocity = rows("PointData/velocity", 3),
+             rate = rows("PointData/shear_rate"), stress = rows("PointData/shear_stress"),
+             pressure = rows("PointData/pressure"), raw_pressure = rows("PointData/raw_pressure"),
+             volume = rows("PointData/volume");
+  std::unique_ptr<Hdf5Rows<float>> flocculation;
+  solver.visit([&](const ParticleBatch& batch) {
+    for (std::size_t i = 0; i < batch.count; ++i)
+      for (auto [to, from] : {std::pair{&points, &batch.position}, std::pair{&velocity, &batch.velocity}}) {
+        const auto at = [&](std::size_t axis) { return static_cast<float>((*from)[axis][i]); };
+        // A slump's section stands upright, so that it can be laid over a three-dimensional run.
+        const bool upright = dimension_ == 2 && !duct_;
+        for (const float x : {at(0), upright ? 0.0f : at(1), upright ? at(1) : at(2)}) (*to)->add(x);
+      }
+    add(*rate, batch.rate);
+    add(*stress, batch.shear_stress);
+    add(*pressure, averaged.at(batch));
+    add(*raw_pressure, batch.raw_pressure);
+    add(*volume, batch.volume);
+    if (batch.flocculation.empty()) return;
+    if (!flocculation) flocculation = rows("PointData/flocculation");
+    add(*flocculation, batch.flocculation);
+  });
+  for (Hdf5Rows<float>* const written :
+       {points.get(), velocity.get(), rate.get(), stress.get(), pressure.get(), raw_pressure.get(),
+        volume.get(), flocculation.get()})
+    if (written) written->finish();
   file.commit();
   series_.emplace_back(name, time);
   write_series();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "mpm/sampling/gmsh_mesh.h"
@@ -24,6 +26,7 @@ constexpr double smallest_share = 0.2;
 struct Body {
   Point lower{}, upper{};
   std::function<bool(const Point&)> contains;
+  bool convex = false;
   double volume = 0.0;
   std::vector<std::array<double, 2>> outline;  ///< corners, along the first axis and the vertical one
   double turn = 0.0;  ///< rad, in space: the outline is turned about the vertical axis
@@ -95,6 +98,7 @@ Body cone(const scenes::Scene& scene) {
         g.cone_radius_bottom + (g.cone_radius_top - g.cone_radius_bottom) * x[up] / g.cone_height;
     return (dim == 3 ? std::hypot(x[0], x[1]) : std::abs(x[0])) <= radius;
   };
+  body.convex = true;
   body.volume = scene.geometry.dimension == scenes::Dimension::plane
                     ? 0.5 * (g.cone_radius_bottom + g.cone_radius_top) * g.cone_height
                     : g.volume() / whole_body_factor(scene);
@@ -118,6 +122,7 @@ std::vector<std::array<double, 2>> corners(const Body& body, std::size_t up) {
 Body box(const Point& size) {
   Body body;
   body.upper = size;
+  body.convex = true;
   body.volume = 1.0;
   for (const double edge : size)
     if (edge > 0.0) body.volume *= edge;
@@ -177,6 +182,7 @@ Body duct(const scenes::Scene& scene) {
   Body body;
   body.upper = {block_edge * cell_size(scene), scene.duct().height, 0.0};
   body.contains = [top = scene.duct().height](const Point& x) { return x[1] >= 0.0 && x[1] <= top; };
+  body.convex = true;
   body.volume = body.upper[0] * body.upper[1];
   body.outline = corners(body, 1);
   return body;
@@ -198,35 +204,51 @@ Body body_of(const scenes::Scene& scene) {
   return {};
 }
 
+/// Fills a body with particles, as often as it is asked to: that takes less than to remember them all.
 class Sampler {
  public:
-  Sampler(const scenes::Scene& scene, const Body& body)
-      : scene_(scene),
-        body_(body),
-        dim_(scene.spatial_dimension()),
-        cell_(cell_size(scene)),
-        random_(scene.mpm.seed) {
+  explicit Sampler(const scenes::Scene& scene)
+      : scene_(scene), body_(body_of(scene)), dim_(scene.spatial_dimension()), cell_(cell_size(scene)) {
     for (int a = 0; a < dim_; ++a) sites_[a] = scene.mpm.particles_per_cell.at(static_cast<std::size_t>(a));
+    if (scene.mpm.seeding == scenes::Seeding::gmsh) {
+      const MeshedBody meshed{body_.outline, dim_, body_.turn, body_.lower[1], body_.upper[1]};
+      const double sites = static_cast<double>(sites_[0]) * sites_[1] * sites_[2];
+      elements_ = mesh_by_gmsh(meshed, std::pow(cell_, dim_) / sites);
+    }
+    if (stands_in_a_container(scene)) weight_.emplace(scene);
+    double total = 0.0;
+    fill([&](const Seed& seed) { total += seed.volume; });
+    scale_ = body_.volume / total;
   }
 
-  std::vector<Seed> sample() {
-    if (scene_.mpm.seeding == scenes::Seeding::gmsh) {
-      fill_with_elements();
-    } else {
-      fill_cells();
-    }
-    double total = 0.0;
-    for (const auto& s : seeds_) total += s.volume;
-    for (auto& s : seeds_) s.volume *= body_.volume / total;
-    return std::move(seeds_);
+  void sample(const std::function<void(const Seed&)>& use) {
+    const auto up = static_cast<std::size_t>(vertical_axis(scene_));
+    fill([&](Seed& seed) {
+      seed.volume *= scale_;
+      if (weight_) {
+        seed.volume_ratio = weight_->ratio(body_.upper[up] - (seed.cell[up] + seed.position[up]) * cell_);
+        seed.volume /= seed.volume_ratio;
+      }
+      use(seed);
+    });
   }
 
  private:
+  using Use = std::function<void(Seed&)>;
+
+  /// Tells all seeds, with volumes as they come.
+  void fill(const Use& use) {
+    random_.seed(scene_.mpm.seed);
+    if (scene_.mpm.seeding == scenes::Seeding::gmsh) {
+      fill_with_elements(use);
+    } else {
+      fill_cells(use);
+    }
+  }
+
   /// A particle at the centroid of every element of an unstructured mesh, with the element's own volume.
-  void fill_with_elements() {
-    MeshedBody meshed{body_.outline, dim_, body_.turn, body_.lower[1], body_.upper[1]};
-    const double sites = static_cast<double>(sites_[0]) * sites_[1] * sites_[2];
-    for (const MeshElement& element : mesh_by_gmsh(meshed, std::pow(cell_, dim_) / sites)) {
+  void fill_with_elements(const Use& use) {
+    for (const MeshElement& element : elements_) {
       CellIndex cell{};
       Point within{};
       for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) {
@@ -234,30 +256,56 @@ class Sampler {
         cell[a] = static_cast<int>(std::floor(place));
         within[a] = place - cell[a];
       }
-      add_seed(cell, within, element.size);
+      add_seed(use, cell, within, element.size);
     }
   }
 
-  void fill_cells() {
+  void fill_cells(const Use& use) {
     std::array<int, 3> first{}, last{1, 1, 1};
     for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) {
       // A face that lies on a multiple of the cell within round-off bounds no further cell.
       first[a] = static_cast<int>(std::floor(body_.lower[a] / cell_ + 1e-9));
       last[a] = static_cast<int>(std::ceil(body_.upper[a] / cell_ - 1e-9));
     }
+    const bool first_time = filled_.empty();
+    std::size_t number = 0;
     for (int i = first[0]; i < last[0]; ++i)
       for (int j = first[1]; j < last[1]; ++j)
-        for (int k = first[2]; k < last[2]; ++k) fill_cell({i, j, k});
+        for (int k = first[2]; k < last[2]; ++k, ++number) {
+          if (first_time)
+            filled_.push_back(fill_cell(use, {i, j, k}));
+          else if (filled_[number])
+            fill_cell(use, {i, j, k});
+        }
   }
 
-  void fill_cell(const CellIndex& cell) {
+  /// False where there is nothing to fill it with.
+  bool fill_cell(const Use& use, const CellIndex& cell) {
     const int in_depth = dim_ == 3 ? sites_[2] : 1;
+    const bool inside = lies_inside(cell);
+    bool filled = false;
     for (int i = 0; i < sites_[0]; ++i)
       for (int j = 0; j < sites_[1]; ++j)
-        for (int k = 0; k < in_depth; ++k) fill_site(cell, {i, j, k});
+        for (int k = 0; k < in_depth; ++k)
+          if (fill_site(use, cell, {i, j, k}, inside)) filled = true;
+    return filled;
   }
 
-  void fill_site(const CellIndex& cell, const std::array<int, 3>& site) {
+  /// Whether all of a cell is certainly inside, so that none of its points need be asked for: its corners
+  /// are, and so are those a little further out. Most cells of a large body are.
+  bool lies_inside(const CellIndex& cell) const {
+    constexpr double further = 1e-6;  // cells; far more than round-off
+    bool inside = body_.convex;
+    for (int corner = 0; inside && corner < 1 << dim_; ++corner) {
+      Point within{};
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a)
+        within[a] = corner >> a & 1 ? 1.0 + further : -further;
+      inside = body_.contains(global(cell, within));
+    }
+    return inside;
+  }
+
+  bool fill_site(const Use& use, const CellIndex& cell, const std::array<int, 3>& site, bool all_inside) {
     Point lower{}, size{};
     double volume = 1.0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a) {
@@ -274,26 +322,27 @@ class Sampler {
           const Point within = {lower[0] + (i + 0.5) / probes * size[0],
                                 lower[1] + (j + 0.5) / probes * size[1],
                                 dim_ == 3 ? lower[2] + (k + 0.5) / probes * size[2] : 0.0};
-          if (!body_.contains(global(cell, within))) continue;
+          if (!all_inside && !body_.contains(global(cell, within))) continue;
           ++inside;
           for (std::size_t a = 0; a < 3; ++a) centroid[a] += within[a];
         }
     const double share = static_cast<double>(inside) / (probes * probes * depth);
-    if (share < smallest_share) return;
+    if (share < smallest_share) return false;
     for (auto& c : centroid) c /= inside;
     if (scene_.mpm.seeding == scenes::Seeding::jittered) centroid = jittered(cell, lower, size, centroid);
-    add_seed(cell, centroid, volume * share);
+    add_seed(use, cell, centroid, volume * share);
+    return true;
   }
 
   /// `size` is the area in the plane, also where that stands for a ring (Pappus: exact at a centroid).
-  void add_seed(const CellIndex& cell, const Point& within, double size) {
+  void add_seed(const Use& use, const CellIndex& cell, const Point& within, double size) {
     const bool axisymmetric = scene_.geometry.dimension == scenes::Dimension::axisymmetric;
     Seed seed;
     seed.cell = cell;
     seed.position = within;
     seed.volume = size * (axisymmetric ? 2.0 * std::numbers::pi * global(cell, within)[0] : 1.0);
     if (scene_.thixotropy) seed.flocculation = scene_.thixotropy->initial_flocculation;
-    seeds_.push_back(seed);
+    use(seed);
   }
 
   /// A random place in the site, inside the body; the centroid where a few tries find none.
@@ -316,28 +365,29 @@ class Sampler {
     return x;
   }
 
-  const scenes::Scene& scene_;
-  const Body& body_;
+  scenes::Scene scene_;
+  Body body_;
   int dim_;
   double cell_;
   int sites_[3] = {1, 1, 1};
   std::mt19937_64 random_;
-  std::vector<Seed> seeds_;
+  std::vector<MeshElement> elements_;  ///< where a mesh is asked for
+  std::vector<bool> filled_;           ///< cells of the bounding box, once they have been seen
+  std::optional<WeightTable> weight_;  ///< where the material carries its weight already
+  double scale_ = 1.0;                 ///< of volumes, so that they sum to the body's
 };
 
 }  // namespace
 
+SeedSource seeds_of(const scenes::Scene& scene) {
+  return [sampler = std::make_shared<Sampler>(scene)](const std::function<void(const Seed&)>& use) {
+    sampler->sample(use);
+  };
+}
+
 std::vector<Seed> seed_particles(const scenes::Scene& scene) {
-  const Body body = body_of(scene);
-  std::vector<Seed> seeds = Sampler(scene, body).sample();
-  if (!stands_in_a_container(scene)) return seeds;
-  const auto up = static_cast<std::size_t>(vertical_axis(scene));
-  const double cell = cell_size(scene);
-  const WeightTable table(scene);
-  for (Seed& seed : seeds) {
-    seed.volume_ratio = table.ratio(body.upper[up] - (seed.cell[up] + seed.position[up]) * cell);
-    seed.volume /= seed.volume_ratio;
-  }
+  std::vector<Seed> seeds;
+  seeds_of(scene)([&](const Seed& seed) { seeds.push_back(seed); });
   return seeds;
 }
 

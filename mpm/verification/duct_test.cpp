@@ -118,7 +118,7 @@ TEST_F(Duct, QuadraticApicMatchesTheExactProfileAndItsPlugDoesNotShear) {
     std::printf("    yield %g Pa: L2 %.3g\n", yield, error);
     EXPECT_LE(error, 1e-3) << name;
     // The plug reaches yield / F from the middle; a cell either side of its edge shares its grid's nodes.
-    Open open(read_checkpoint(folder / name)->solver, settings_of(scene));
+    Open open(all_of(read_checkpoint(folder / name)->solver), settings_of(scene));
     double fastest = 0.0;
     int in_plug = 0;
     for (std::size_t p = 0; p < open.size(); ++p) {
