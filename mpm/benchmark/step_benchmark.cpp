@@ -3,7 +3,7 @@
 //   scripts/bench                                   everything
 //   scripts/bench --benchmark_filter=quarter/44k    one of them
 //   scripts/bench --features                        what each feature of a scene costs
-//   scripts/bench --threads                         what all cores give over one
+//   scripts/bench --threads                         what all cores give over one, and cost beside other work
 //
 // `particle_steps` is per CPU second; `of_fma` and `of_bandwidth` are its arithmetic (one fused multiply-add
 // a particle-step) and its memory traffic (every byte stored, once) over the machine's limits, measured in

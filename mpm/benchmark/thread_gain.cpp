@@ -1,6 +1,10 @@
 #include "mpm/benchmark/thread_gain.h"
 
 #include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +16,7 @@ namespace flowrest::mpm::bench {
 namespace {
 
 constexpr int turns = 15;
+constexpr int busy_loops = 2;
 constexpr double particle_steps_per_turn = 1e6;
 
 /// Cores that this process may use.
@@ -76,6 +81,68 @@ void print_gain(const char* name, const std::vector<std::string>& set, const std
   std::fflush(stdout);
 }
 
+/// Other people's work: processes that always have something to do, for as long as this lives.
+class BusyLoops {
+ public:
+  explicit BusyLoops(int count) {
+    for (int i = 0; i < count; ++i) {
+      const pid_t child = fork();
+      if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        while (true) benchmark::ClobberMemory();
+      }
+      if (child > 0) children_.push_back(child);
+    }
+  }
+  ~BusyLoops() {
+    for (const pid_t child : children_) {
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    }
+  }
+  BusyLoops(const BusyLoops&) = delete;
+  BusyLoops& operator=(const BusyLoops&) = delete;
+
+ private:
+  std::vector<pid_t> children_;
+};
+
+/// Wall and CPU time of a particle-step, ns.
+struct Times {
+  double wall = 0.0, cpu = 0.0;
+};
+
+Times times_of(FlowingSlump& slump, double particle_steps) {
+  const int steps = std::max(1, static_cast<int>(particle_steps / slump.particles()));
+  const double cpu = cpu_seconds(), wall = time_of_steps(slump, steps, wall_seconds);
+  return {wall, (cpu_seconds() - cpu) / (steps * slump.particles()) * 1e9};
+}
+
+/// What all threads take of one's time beside other work, wherever the system puts them.
+void print_cost_beside_others(const char* name, const std::vector<std::string>& set, std::size_t threads) {
+  FlowingSlump one(set), together(with(set, {"mpm.threads=" + std::to_string(threads)}));
+  const BusyLoops others(busy_loops);
+  std::vector<double> wall, cpu, wall_ratio, cpu_ratio;
+  for (int turn = 0; turn < turns; ++turn) {
+    const Times alone = times_of(one, particle_steps_per_turn),
+                all = times_of(together, particle_steps_per_turn);
+    wall.push_back(alone.wall);
+    cpu.push_back(alone.cpu);
+    wall_ratio.push_back(all.wall / alone.wall);
+    cpu_ratio.push_back(all.cpu / alone.cpu);
+  }
+  const auto print = [](const char* what, const std::vector<double>& one_takes,
+                        const std::vector<double>& ratio) {
+    std::printf("  %s %6.1f ns x %.2f (%.2f to %.2f)", what, quantile(one_takes, 0.5), quantile(ratio, 0.5),
+                quantile(ratio, 0.25), quantile(ratio, 0.75));
+  };
+  std::printf("  %-32s", name);
+  print("wall", wall, wall_ratio);
+  print("CPU", cpu, cpu_ratio);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 void print_thread_gain() {
@@ -96,6 +163,17 @@ void print_thread_gain() {
             with(base, {std::string("mpm.scheme=") + scheme, std::string("mpm.precision=") + precision}),
             all);
   stay_on(all);
+  std::printf(
+      "what they cost beside %d busy loops: wall and CPU time of a particle-step on one thread, and times "
+      "that on "
+      "all of them\n(medians of %d turns; quartiles of the ratio)\n",
+      busy_loops, turns);
+  for (const char* scheme : {"quadratic-apic", "linear-flip"})
+    for (const char* precision : {"float", "double"})
+      print_cost_beside_others((std::string("44k/") + scheme + "/" + precision).c_str(),
+                               with(quarter_44k(), {std::string("mpm.scheme=") + scheme,
+                                                    std::string("mpm.precision=") + precision}),
+                               all.size());
 }
 
 }  // namespace flowrest::mpm::bench
