@@ -27,8 +27,6 @@
 #include "runs/errors.h"
 #include "runs/machine.h"
 
-extern char** environ;
-
 namespace flowrest::runs {
 
 namespace fs = std::filesystem;
@@ -57,43 +55,71 @@ void note_interrupt(int number) {
   interrupts = interrupts + 1;
 }
 
-/// What a child and all that it starts carry in their environment, so that they are found whoever their
-/// parent has become.
-constexpr const char* mark_name = "FLOWREST_STARTED_AS";
+/// By which a process is known as started by us, directly or not: the marks of all that it descends from.
+constexpr const char* marks = "FLOWREST_STARTED_BY";
+/// Which job of Slurm a process belongs to.
+constexpr const char* slurm_job = "SLURM_JOB_ID";
+/// How long what was asked twice may take to end.
+constexpr std::chrono::seconds patience{5};
 
+/// Of all processes that there are or will be, on this machine.
 std::string new_mark() {
   static std::atomic<int> count = 0;
-  return fmt::format("{}-{}-{}", getpid(), std::chrono::steady_clock::now().time_since_epoch().count(),
+  return fmt::format("/{}-{}-{}/", getpid(), std::chrono::system_clock::now().time_since_epoch().count(),
                      ++count);
 }
 
-bool carries(const fs::path& process, const std::string& mark) {
-  std::ifstream file(process / "environ", std::ios::binary);
-  const std::string entry = std::string(mark_name) + "=" + mark;
-  for (std::string variable; std::getline(file, variable, '\0');)
-    if (variable == entry) return true;
-  return false;
+std::string value_of(const std::map<std::string, std::string>& environment, const char* name) {
+  const auto found = environment.find(name);
+  return found == environment.end() ? "" : found->second;
 }
 
-/// The processes that carry a mark, and all that descend from them: of those some may carry another.
+std::vector<std::string> texts_of(const std::map<std::string, std::string>& environment) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : environment) texts.push_back(name + "=" + value);
+  return texts;
+}
+
+/// What a process was told when it was started; empty for the dead that wait for their parent.
+std::map<std::string, std::string> environment_of(const fs::path& process) {
+  std::map<std::string, std::string> entries;
+  std::ifstream file(process / "environ", std::ios::binary);
+  for (std::string entry; std::getline(file, entry, '\0');)
+    if (const auto equals = entry.find('='); equals != std::string::npos)
+      entries.emplace(entry.substr(0, equals), entry.substr(equals + 1));
+  return entries;
+}
+
+/// The parent of a process; nothing where that has ended.
+std::optional<pid_t> parent_of(const fs::path& process) {
+  std::ifstream file(process / "stat");
+  std::string text;
+  std::getline(file, text);
+  const auto name_ends = text.rfind(')');  // the name may hold anything
+  if (name_ends == std::string::npos) return std::nullopt;
+  std::istringstream rest(text.substr(name_ends + 1));
+  std::string state;
+  pid_t parent = 0;
+  if (!(rest >> state >> parent) || state == "Z") return std::nullopt;
+  return parent;
+}
+
+/// The processes that carry a mark, and all that descend from them: some hide what they were told. Jobs that
+/// a scheduler runs for us carry it, too, but belong to the scheduler.
 std::set<pid_t> family_of(const std::string& mark) {
+  const std::string job = value_of(own_environment(), slurm_job);
   std::set<pid_t> family;
   std::map<pid_t, pid_t> parents;
   std::error_code error;
-  for (const auto& folder : fs::directory_iterator("/proc", error)) {
-    const pid_t pid = std::atoi(folder.path().filename().c_str());
-    if (pid <= 0) continue;
-    std::ifstream file(folder.path() / "stat");
-    std::string text;
-    std::getline(file, text);
-    const auto name_ends = text.rfind(')');  // the name may hold anything
-    if (name_ends == std::string::npos) continue;
-    std::istringstream rest(text.substr(name_ends + 1));
-    std::string state;
-    pid_t parent = 0;
-    if (!(rest >> state >> parent) || state == "Z") continue;
-    parents[pid] = parent;
-    if (carries(folder.path(), mark)) family.insert(pid);
+  for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
+    const pid_t pid = std::atoi(entry->path().filename().c_str());
+    const auto parent = pid > 0 ? parent_of(entry->path()) : std::nullopt;
+    if (!parent) continue;
+    const auto told = environment_of(entry->path());
+    const bool marked = value_of(told, marks).find(mark) != std::string::npos;
+    if (marked && value_of(told, slurm_job) != job) continue;
+    parents[pid] = *parent;
+    if (marked) family.insert(pid);
   }
   for (std::size_t before = 0; before != family.size();) {
     before = family.size();
@@ -101,16 +127,6 @@ std::set<pid_t> family_of(const std::string& mark) {
       if (family.contains(parent)) family.insert(pid);
   }
   return family;
-}
-
-std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added) {
-  std::vector<std::string> merged;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string text(*entry);
-    if (!added.contains(text.substr(0, text.find('=')))) merged.push_back(text);
-  }
-  for (const auto& [name, value] : added) merged.push_back(name + "=" + value);
-  return merged;
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
@@ -174,14 +190,27 @@ bool ProcessEnd::from_outside() const {
 }
 
 Process::Process(const fs::path& program, const std::vector<std::string>& arguments,
+                 const fs::path& directory, const fs::path& log, const Environment& environment) {
+  start(program, arguments, directory, log, environment.entries());
+}
+
+Process::Process(const fs::path& program, const std::vector<std::string>& arguments,
                  const fs::path& directory, const fs::path& log,
-                 const std::map<std::string, std::string>& environment)
-    : mark_(new_mark()) {
+                 const std::map<std::string, std::string>& added) {
+  auto environment = own_environment();
+  for (const auto& [name, value] : added) environment[name] = value;
+  start(program, arguments, directory, log, std::move(environment));
+}
+
+void Process::start(const fs::path& program, const std::vector<std::string>& arguments,
+                    const fs::path& directory, const fs::path& log,
+                    std::map<std::string, std::string> environment) {
+  mark_ = new_mark();
+  environment[marks] += mark_;
+  environment["PWD"] = fs::absolute(directory).string();
   std::vector<std::string> argument_texts{program.filename().string()};
   argument_texts.insert(argument_texts.end(), arguments.begin(), arguments.end());
-  auto marked = environment;
-  marked[mark_name] = mark_;
-  auto environment_texts = merged_environment(marked);
+  auto environment_texts = texts_of(environment);
   const auto argument_pointers = pointers(argument_texts);
   const auto environment_pointers = pointers(environment_texts);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -216,9 +245,7 @@ Process::Process(const fs::path& program, const std::vector<std::string>& argume
 }
 
 Process::~Process() {
-  if (end_ || pid_ <= 0) return;
-  signal(SIGKILL);
-  waitpid(pid_, nullptr, 0);
+  if (pid_ > 0) kill_all();
 }
 
 std::optional<ProcessEnd> Process::poll() {
@@ -245,28 +272,42 @@ std::optional<ProcessEnd> Process::wait(double longest) {
 }
 
 void Process::signal(int number) {
-  if (end_ || pid_ <= 0) return;
-  kill(-pid_, number);
-  if (number == SIGKILL)
-    for (const pid_t pid : family_of(mark_)) kill(pid, SIGKILL);
+  if (!end_ && pid_ > 0) kill(-pid_, number);
 }
 
 bool Process::hand_on_interrupts() {
-  for (const int asked = InterruptGuard::count(); handed_on_ < asked; ++handed_on_)
-    signal(handed_on_ < 2 ? SIGINT : SIGKILL);
+  const auto now = std::chrono::steady_clock::now();
+  for (const int asked = InterruptGuard::count(); handed_on_ < asked; ++handed_on_) {
+    signal(SIGINT);
+    if (handed_on_ == 1) deadline_ = now + patience;
+    if (handed_on_ > 1) deadline_ = now;
+  }
+  if (deadline_ && now >= *deadline_) kill_all();
   return handed_on_ > 0;
 }
 
+bool Process::any_left() const { return !family_of(mark_).empty(); }
+
 void Process::end_survivors(double longest) {
   const auto start = std::chrono::steady_clock::now();
-  for (auto left = family_of(mark_); !left.empty(); left = family_of(mark_)) {
+  while (any_left()) {
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
-    if (waited.count() >= longest || InterruptGuard::count() > handed_on_)
-      for (const pid_t pid : left) kill(pid, SIGKILL);
-    constexpr double hopeless = 10.0;  // s, after which a device holds what was killed
-    if (waited.count() >= longest + hopeless) return;
+    if (waited.count() >= longest) return kill_all();
+    hand_on_interrupts();
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
+}
+
+void Process::kill_all() {
+  signal(SIGKILL);
+  // Also those that were just being started; not for ever those that a device holds.
+  const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  for (auto left = family_of(mark_); !left.empty() && std::chrono::steady_clock::now() < latest;
+       left = family_of(mark_)) {
+    for (const pid_t pid : left) kill(pid, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  wait(10.0);
 }
 
 InterruptGuard::InterruptGuard() {

@@ -2,11 +2,14 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "runs/environment.h"
 
 /// Programs run as child processes, each with its log.
 namespace flowrest::runs {
@@ -28,14 +31,21 @@ struct ProcessEnd {
 };
 
 /// A running child. It has a process group of its own, so that Ctrl-C on the terminal reaches only us and we
-/// decide how it ends; it is killed when it goes out of scope or when this process dies.
+/// decide how it ends; it is killed when it goes out of scope or when this process dies. What it has started
+/// in turn is known by a mark in its environment, wherever it has gone (ranks and jobs have groups of their
+/// own), and never outlives this object.
 class Process {
  public:
-  /// Starts `program` in `directory`, its output and errors going to `log`, `environment` added to ours.
+  /// Starts `program`, a helper, in `directory`, its output and errors going to `log`, in this environment
+  /// and no other.
   /// @throws MissingProgram where it cannot be started.
   Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
           const std::filesystem::path& directory, const std::filesystem::path& log,
-          const std::map<std::string, std::string>& environment);
+          const Environment& environment);
+  /// As before, for this program itself: `added` to the environment that we have.
+  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+          const std::filesystem::path& directory, const std::filesystem::path& log,
+          const std::map<std::string, std::string>& added);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -44,19 +54,29 @@ class Process {
   std::optional<ProcessEnd> poll();
   /// Waits for its end, at most `seconds`.
   std::optional<ProcessEnd> wait(double seconds);
-  /// Sends a signal to it and its children; SIGKILL also to those that made themselves independent of it.
+  /// Sends a signal to it and its children.
   void signal(int number);
-  /// Hands on to it every interrupt that has come to us since the last call: two as SIGINT, the third ends it
-  /// and all that it started. True once there was one.
+  /// While an InterruptGuard lives: hands on to it, as SIGINT, every interrupt that has come to us since the
+  /// last call. What is left a few seconds after the second one is killed, and at once after the third. To be
+  /// called again and again while it runs. True once there was one.
   bool hand_on_interrupts();
-  /// Waits, at most `seconds` and not past another interrupt, for what it started and has left behind; then
-  /// kills that.
+  /// Whether it or anything that it started still runs.
+  bool any_left() const;
+  /// Waits, at most `seconds`, for what it started and has left behind, handing interrupts on; then kills
+  /// that.
   void end_survivors(double seconds);
+  /// Kills it and all that it started, and waits until they are gone.
+  void kill_all();
 
  private:
+  void start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+             const std::filesystem::path& directory, const std::filesystem::path& log,
+             std::map<std::string, std::string> environment);
+
   pid_t pid_ = -1;
   std::string mark_;
   int handed_on_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> deadline_;  ///< of what was asked twice to end
   std::optional<ProcessEnd> end_;
 };
 

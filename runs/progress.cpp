@@ -53,6 +53,12 @@ void Progress::update(double done, const std::string& state) {
   }
 }
 
+void Progress::note(const std::string& text) {
+  if (quiet_) return;
+  fmt::print(stderr, "{}{}: {}\n", terminal_ ? "\r\033[K" : "", what_, text);
+  std::fflush(stderr);
+}
+
 void Progress::finish(const std::string& summary) {
   if (quiet_) return;
   const double elapsed = Seconds(std::chrono::steady_clock::now() - start_).count();

@@ -12,6 +12,8 @@ class Progress {
   Progress(std::string what, double end, bool quiet = false);
   /// `done` of `end`, with a short text of the state (e.g. "spread 543 mm").
   void update(double done, const std::string& state);
+  /// A line that stays.
+  void note(const std::string& text);
   void finish(const std::string& summary);
 
  private:
