@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <unordered_map>
@@ -60,8 +63,13 @@ Point cross(const Point& a, const Point& b) {
 
 MeshElement element(const std::vector<Point>& corners) {
   MeshElement e;
+  e.lower = e.upper = corners.front();
   for (const Point& c : corners)
-    for (std::size_t a = 0; a < 3; ++a) e.centroid[a] += c[a] / static_cast<double>(corners.size());
+    for (std::size_t a = 0; a < 3; ++a) {
+      e.centroid[a] += c[a] / static_cast<double>(corners.size());
+      e.lower[a] = std::min(e.lower[a], c[a]);
+      e.upper[a] = std::max(e.upper[a], c[a]);
+    }
   const Point normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (corners.size() == 3) {
     e.size = 0.5 * std::hypot(normal[0], normal[1], normal[2]);
@@ -72,7 +80,92 @@ MeshElement element(const std::vector<Point>& corners) {
   return e;
 }
 
+double edge_of(int dimension, double size) {
+  return dimension == 2 ? edge_of_unit_triangle * std::sqrt(size)
+                        : edge_of_unit_tetrahedron * std::cbrt(size);
+}
+
+/// A body's measures as its outline gives them.
+struct Extent {
+  double size = 0.0;  ///< m2 or m3
+  Point lower{}, upper{};
+  /// What straight edges may cut off a round side: of the volume, m3, and of the reach, m.
+  double size_cut = 0.0, reach_cut = 0.0;
+};
+
+Extent extent_of(const MeshedBody& body, double edge) {
+  Extent extent;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low_along = infinity, high_along = -infinity, low_up = infinity, high_up = -infinity;
+  double area = 0.0, moment = 0.0;  // of the area about the vertical axis
+  for (std::size_t i = 0; i < body.outline.size(); ++i) {
+    const auto& [x, z] = body.outline[i];
+    const auto& [next_x, next_z] = body.outline[(i + 1) % body.outline.size()];
+    area += 0.5 * (x * next_z - next_x * z);
+    moment += (x + next_x) * (x * next_z - next_x * z) / 6.0;
+    low_along = std::min(low_along, x);
+    high_along = std::max(high_along, x);
+    low_up = std::min(low_up, z);
+    high_up = std::max(high_up, z);
+  }
+  if (body.dimension == 2) {
+    extent.size = std::abs(area);
+    extent.lower = {low_along, low_up, 0.0};
+    extent.upper = {high_along, high_up, 0.0};
+  } else if (body.turn == 0.0) {
+    extent.size = std::abs(area) * (body.upper - body.lower);
+    extent.lower = {low_along, body.lower, low_up};
+    extent.upper = {high_along, body.upper, high_up};
+  } else {
+    // Pappus. An edge over an arc of the angle a cuts off a^2 / 6 of its sector, and a^2 / 8 of its radius.
+    // Edges along a curve come out longer than what is asked, but no quarter is spanned by less than one.
+    extent.size = std::abs(moment) * body.turn;
+    const bool whole = body.turn > std::numbers::pi;
+    extent.lower = {whole ? -high_along : 0.0, whole ? -high_along : 0.0, low_up};
+    extent.upper = {high_along, high_along, high_up};
+    const double chord = std::min(2.0 * edge, std::numbers::sqrt2 * high_along);
+    extent.size_cut = std::min(0.5 * extent.size, 0.5 * body.turn * chord * chord / 6.0 * (high_up - low_up));
+    extent.reach_cut = std::min(0.3 * high_along, chord * chord / (8.0 * high_along));
+  }
+  return extent;
+}
+
 }  // namespace
+
+std::string misfit(const MeshedBody& body, const std::vector<MeshElement>& elements, double size) {
+  const Extent wanted = extent_of(body, edge_of(body.dimension, size));
+  double total = 0.0;
+  Point lower = elements.front().lower, upper = elements.front().upper;
+  for (const MeshElement& e : elements) {
+    total += e.size;
+    for (std::size_t a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], e.lower[a]);
+      upper[a] = std::max(upper[a], e.upper[a]);
+    }
+  }
+  constexpr double round_off = 1e-6;
+  if (!(total <= wanted.size * (1.0 + round_off) &&
+        total >= wanted.size * (1.0 - round_off) - wanted.size_cut))
+    return fmt::format("it fills {:.6g} {}, the body {:.6g}", total, body.dimension == 2 ? "m2" : "m3",
+                       wanted.size);
+  double longest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, wanted.upper[a] - wanted.lower[a]);
+  const double slip = round_off * longest;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(body.dimension); ++a) {
+    const bool round = a < 2;  // the height is not cut
+    const double cut = slip + (round ? wanted.reach_cut : 0.0);
+    if (!(lower[a] >= wanted.lower[a] - slip && lower[a] <= wanted.lower[a] + cut &&
+          upper[a] <= wanted.upper[a] + slip && upper[a] >= wanted.upper[a] - cut))
+      return fmt::format("along axis {} it reaches from {:.6g} to {:.6g} m, the body from {:.6g} to {:.6g}",
+                         a + 1, lower[a], upper[a], wanted.lower[a], wanted.upper[a]);
+  }
+  constexpr double coarsest = 2.0;
+  const double mean = total / static_cast<double>(elements.size());
+  if (mean > coarsest * size)
+    return fmt::format("it has {} elements of {:.3g} {} on average, asked for were {:.3g}", elements.size(),
+                       mean, body.dimension == 2 ? "m2" : "m3", size);
+  return "";
+}
 
 std::vector<MeshElement> read_gmsh(const fs::path& file, int dimension) {
   const auto refuse = [&](const std::string& what) -> void {
@@ -136,15 +229,13 @@ std::vector<MeshElement> mesh_by_gmsh(const MeshedBody& body, double size) {
         "gmsh is not on the PATH: mpm.seeding = \"gmsh\" needs it (Debian: apt-get install gmsh); lattice "
         "and "
         "jittered do without");
-  const double edge = body.dimension == 2 ? edge_of_unit_triangle * std::sqrt(size)
-                                          : edge_of_unit_tetrahedron * std::cbrt(size);
   const runs::TemporaryFolder folder;
-  write_geometry(folder / "body.geo", body, edge);
+  write_geometry(folder / "body.geo", body, edge_of(body.dimension, size));
   // One thread, so that the same mesh comes out every time.
   runs::Process process(*program,
                         {"body.geo", fmt::format("-{}", body.dimension), "-format", "msh2", "-o", "body.msh",
                          "-nt", "1", "-v", "2"},
-                        folder.path(), folder / "log", {});
+                        folder.path(), folder / "log", runs::Environment::of_helper());
   std::optional<runs::ProcessEnd> end;
   while (!(end = process.wait(0.1)))
     if (runs::InterruptGuard::count() > 0) throw runs::Interrupted("interrupted before the run began");
@@ -154,6 +245,9 @@ std::vector<MeshElement> mesh_by_gmsh(const MeshedBody& body, double size) {
   auto elements = read_gmsh(folder / "body.msh", body.dimension);
   if (elements.empty())
     throw runs::RunError("gmsh made no mesh of the body: " + runs::last_words(folder / "log"));
+  if (const std::string wrong = misfit(body, elements, size); !wrong.empty())
+    throw runs::RunError(
+        fmt::format("gmsh's mesh ({}) is not one of the body: {}", program->string(), wrong));
   return elements;
 }
 

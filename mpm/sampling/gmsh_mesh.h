@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace flowrest::mpm {
@@ -17,13 +18,19 @@ struct MeshedBody {
 
 /// A triangle or tetrahedron of a mesh.
 struct MeshElement {
-  std::array<double, 3> centroid{};  ///< m; in the plane the third is not used
-  double size = 0.0;                 ///< m2 or m3
+  std::array<double, 3> centroid{};        ///< m; in the plane the third is not used
+  double size = 0.0;                       ///< m2 or m3
+  std::array<double, 3> lower{}, upper{};  ///< m, of its corners
 };
 
 /// Meshes a body with elements of `size` (m2 or m3) on average, by the program gmsh.
-/// @throws runs::MissingProgram where gmsh is not installed, runs::RunError where it fails.
+/// @throws runs::MissingProgram where gmsh is not installed, runs::RunError where it fails or its mesh does
+/// not fill the body with elements of that size.
 std::vector<MeshElement> mesh_by_gmsh(const MeshedBody&, double size);
+
+/// Why elements asked for with `size` (m2 or m3) do not fill the body: their volume, their bounds or their
+/// number are not as they must be; empty where they do.
+std::string misfit(const MeshedBody&, const std::vector<MeshElement>&, double size);
 
 /// The triangles (dimension 2) or tetrahedra (3) of a mesh in Gmsh's format 2.2, ASCII.
 /// @throws runs::RunError where the file is no such mesh.

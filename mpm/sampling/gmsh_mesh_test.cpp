@@ -11,6 +11,7 @@
 
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -35,6 +36,8 @@ class GmshMesh : public testing::Test {
   std::filesystem::path file_ =
       std::filesystem::temp_directory_path() / ("flowrest-mesh-" + std::to_string(::getpid()) + ".msh");
 };
+
+double count(const std::vector<MeshElement>& mesh) { return static_cast<double>(mesh.size()); }
 
 double volume(const std::vector<MeshElement>& mesh) {
   double sum = 0.0;
@@ -119,5 +122,50 @@ TEST_F(GmshMesh, ItsElementsFillTheBodyAndHaveTheAskedSize) {
       least = std::min(least, e.centroid[1]);
     }
     EXPECT_EQ(least<0.0, turn> 3.0);
+  }
+}
+
+/// Settings in the home and in the environment: gmsh is started without them.
+TEST_F(GmshMesh, TheUsersSettingsAreNotThoseOfTheSeeding) {
+  if (!runs::find_program("gmsh")) GTEST_SKIP() << "gmsh is not installed";
+  const MeshedBody square{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
+  const auto expected = mesh_by_gmsh(square, 2e-3);
+  const runs::TemporaryFolder home;
+  for (const char* name : {".gmshrc", ".gmsh-options"})
+    std::ofstream(home / name)
+        << "Mesh.RecombineAll = 1;\nMesh.MeshSizeFactor = 2;\nMesh.ElementOrder = 2;\n";
+  const std::string before = std::getenv("HOME") ? std::getenv("HOME") : "/";
+  setenv("HOME", home.path().c_str(), 1);
+  setenv("GMSH_HOME", home.path().c_str(), 1);
+  const auto mesh = mesh_by_gmsh(square, 2e-3);
+  unsetenv("GMSH_HOME");
+  setenv("HOME", before.c_str(), 1);
+  EXPECT_EQ(mesh.size(), expected.size());
+}
+
+TEST_F(GmshMesh, ElementsThatAreNotThoseOfTheBodyAreRefused) {
+  if (!runs::find_program("gmsh")) GTEST_SKIP() << "gmsh is not installed";
+  MeshedBody body{{{0.0, 0.0}, {1.0, 0.0}, {0.5, 1.0}, {0.0, 1.0}}};
+  for (const double turn : {0.0, 0.5 * std::numbers::pi, 2.0 * std::numbers::pi}) {
+    for (const double share : {0.3, 0.03, 2e-3}) {
+      body.turn = turn;
+      body.dimension = turn > 0.0 ? 3 : 2;
+      const auto mesh = mesh_by_gmsh(body, share);
+      EXPECT_EQ(misfit(body, mesh, share), "") << turn << " " << share;
+      const std::string coarse = misfit(body, mesh, 0.3 * volume(mesh) / count(mesh));
+      EXPECT_NE(coarse, "");
+      if (turn == 0.0) {
+        EXPECT_THAT(coarse, testing::HasSubstr("on average, asked for were"));
+      }
+      auto moved = body;
+      for (auto& corner : moved.outline) corner[1] += 1e-3;
+      EXPECT_THAT(misfit(moved, mesh, share), testing::HasSubstr("it reaches from")) << turn;
+      auto smaller = body;
+      smaller.outline[2][0] = 0.0;
+      EXPECT_THAT(misfit(smaller, mesh, share), testing::HasSubstr("it fills"));
+      if (share > 0.01) continue;
+      const std::vector<MeshElement> half(mesh.begin(), mesh.begin() + static_cast<long>(mesh.size() / 2));
+      EXPECT_THAT(misfit(body, half, share), testing::HasSubstr("it fills"));
+    }
   }
 }
