@@ -7,11 +7,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
+#include "compare/report/picture_size.h"
+#include "runs/environment.h"
 #include "runs/process.h"
 
 namespace flowrest::report {
@@ -35,7 +39,8 @@ std::string from_base64(const std::string& text) {
 }
 
 /// In the child: the pipe's ends become descriptors 3 and 4, as --remote-debugging-pipe expects them.
-[[noreturn]] void become_browser(const std::string& program, int in, int out, const std::string& profile) {
+[[noreturn]] void become_browser(const char* program, char* const* arguments, char* const* environment,
+                                 int in, int out) {
   setpgid(0, 0);
   const int reads = fcntl(in, F_DUPFD, 10), writes = fcntl(out, F_DUPFD, 10);
   dup2(reads, 3);
@@ -44,12 +49,33 @@ std::string from_base64(const std::string& text) {
   dup2(nowhere, 1);
   dup2(nowhere, 2);
   for (int other = 5; other < 64; ++other) close(other);
-  const std::string folder = "--user-data-dir=" + profile;
-  execlp(program.c_str(), program.c_str(), "--headless", "--no-sandbox", "--disable-gpu",
-         "--remote-debugging-pipe", "--hide-scrollbars", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync", "--no-first-run", folder.c_str(), "about:blank",
-         static_cast<char*>(nullptr));
+  execve(program, arguments, environment);
   _exit(127);
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+/// The address of a file: what means something in an address is written as its number.
+std::string address_of(const std::filesystem::path& file) {
+  std::string address = "file://";
+  for (const char c : std::filesystem::absolute(file).string()) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                       std::string_view("/._-~").find(c) != std::string_view::npos;
+    constexpr const char* digits = "0123456789ABCDEF";
+    if (plain) {
+      address += c;
+    } else {
+      address += '%';
+      address += digits[static_cast<unsigned char>(c) >> 4];
+      address += digits[static_cast<unsigned char>(c) & 15];
+    }
+  }
+  return address;
 }
 
 }  // namespace
@@ -64,9 +90,27 @@ Browser::Browser(const std::filesystem::path& folder) {
   std::array<int, 2> commands{}, answers{};
   if (pipe(commands.data()) != 0 || pipe(answers.data()) != 0)
     throw std::runtime_error("no pipe to the browser");
-  const std::string profile = (folder / "profile").string(), program = browser_program();
+  const auto program = runs::find_program(browser_program());
+  if (!program) throw std::runtime_error("there is no browser");
+  std::vector<std::string> texts = {program->string(),
+                                    "--headless",
+                                    "--no-sandbox",
+                                    "--disable-gpu",
+                                    "--remote-debugging-pipe",
+                                    "--hide-scrollbars",
+                                    "--disable-background-networking",
+                                    "--disable-component-update",
+                                    "--disable-sync",
+                                    "--no-first-run",
+                                    "--user-data-dir=" + (folder / "profile").string(),
+                                    "about:blank"};
+  std::vector<std::string> told;
+  const auto settings = runs::Environment::of_helper();
+  for (const auto& [name, value] : settings.entries()) told.push_back(name + "=" + value);
+  const auto arguments = pointers(texts), environment = pointers(told);
   process_ = fork();
-  if (process_ == 0) become_browser(program, commands[0], answers[1], profile);
+  if (process_ == 0)
+    become_browser(program->c_str(), arguments.data(), environment.data(), commands[0], answers[1]);
   close(commands[0]);
   close(answers[1]);
   to_ = commands[1];
@@ -135,6 +179,7 @@ nlohmann::json Browser::call(const std::string& method, const Json& parameters) 
 }
 
 void Browser::window(int width, int height, bool telephone) {
+  seen_ = {width * (telephone ? 2 : 1), height * (telephone ? 2 : 1)};
   call("Emulation.setDeviceMetricsOverride", {{"width", width},
                                               {"height", height},
                                               {"deviceScaleFactor", telephone ? 2 : 1},
@@ -150,7 +195,7 @@ void Browser::open(const std::filesystem::path& file, const std::string& hash) {
   call("Page.navigate", {{"url", "about:blank"}});
   while (!loaded_) note(receive());
   loaded_ = false;
-  call("Page.navigate", {{"url", "file://" + std::filesystem::absolute(file).string() + hash}});
+  call("Page.navigate", {{"url", address_of(file) + hash}});
   while (!loaded_) note(receive());
   loaded_ = false;
 }
@@ -207,6 +252,8 @@ std::pair<double, double> Browser::place_of(const std::string& selector) {
 void Browser::screenshot(const std::filesystem::path& file) {
   std::ofstream(file, std::ios::binary)
       << from_base64(call("Page.captureScreenshot", {{"format", "png"}})["data"]);
+  if (const auto size = png_size(file); !size || (seen_ && *size != *seen_))
+    throw std::runtime_error(file.string() + ": the picture is not whole or not of the window's size");
 }
 
 std::string Browser::pdf() {

@@ -4,8 +4,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "compare/report/picture_size.h"
 
 /// A headless Chromium that a test drives through the DevTools protocol, over a pipe: no port, no network.
 namespace flowrest::report {
@@ -41,7 +44,8 @@ class Browser {
   void click(double x, double y);
   /// The centre of the element, scrolled into view.
   std::pair<double, double> place_of(const std::string& selector);
-  /// Writes what is seen as PNG; the whole page or the window.
+  /// Writes what is seen as PNG; the whole page or the window. @throws std::runtime_error where that is not
+  /// what comes.
   void screenshot(const std::filesystem::path& file);
   /// The page printed to PDF.
   std::string pdf();
@@ -58,6 +62,7 @@ class Browser {
   int calls_ = 0;
   std::string session_, buffer_;
   bool loaded_ = false;
+  std::optional<PictureSize> seen_;  ///< pixels of the window
   std::vector<std::string> complaints_;
 };
 

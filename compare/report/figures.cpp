@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <utility>
 
 #include "compare/report/page_json.h"
+#include "compare/report/picture_size.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
@@ -58,6 +61,13 @@ std::string name_of(const Entry& entry) {
          (entry.trouble.empty() ? "" : " (incomplete)");
 }
 
+/// A figure that a script draws: the size of its SVG and how much larger its PNG is.
+struct Drawn {
+  std::string id;
+  int width = 0, height = 0;
+};
+constexpr double png_scale = 2.2;
+
 /// A gnuplot script under way: data blocks and the commands of each figure.
 class Script {
  public:
@@ -68,10 +78,13 @@ class Script {
     text_ += fmt::format("{} << EOD\n{}EOD\n", name, rows);
     return name;
   }
+  void note(const Drawn& figure) { drawn_.push_back(figure); }
   const std::string& text() const { return text_; }
+  const std::vector<Drawn>& drawn() const { return drawn_; }
 
  private:
   std::string text_;
+  std::vector<Drawn> drawn_;
   int blocks_ = 0;
 };
 
@@ -96,6 +109,7 @@ void set_axis(Script& script, char which, const Axis& axis, bool logarithmic) {
 
 /// Draws what `commands` says as ID.svg and as ID.png.
 void draw(Script& script, const std::string& id, const std::string& commands, int width, int height) {
+  script.note({id, width, height});
   script.line(
       fmt::format("set terminal svg noenhanced size {},{} font 'Liberation Sans,13' background rgb 'white'",
                   width, height));
@@ -103,7 +117,7 @@ void draw(Script& script, const std::string& id, const std::string& commands, in
   script.line(
       fmt::format("set terminal pngcairo noenhanced size {},{} font 'Liberation Sans,13' fontscale 1.65 "
                   "linewidth 2.2 pointscale 2.2",
-                  2.2 * width, 2.2 * height));
+                  png_scale * width, png_scale * height));
   script.line(fmt::format("set output '{}.png'\n{}\nset output", id, commands));
 }
 
@@ -381,11 +395,11 @@ fs::path program_path(const std::string& name, const std::string& package) {
   return *program;
 }
 
-/// Runs a program in a folder; its log stays where it fails.
+/// Runs a program in a folder, which it knows as the one it is in; its log stays where it fails.
 void run_program(const std::string& name, const std::string& package,
                  const std::vector<std::string>& arguments, const fs::path& folder) {
   const fs::path program = program_path(name, package), log = folder / fmt::format("log.{}", name);
-  runs::Process process(program, arguments, folder, log, {});
+  runs::Process process(program, arguments, folder, log, runs::Environment::of_helper());
   const auto end = process.wait(600.0);
   if (end && end->good()) {
     fs::remove(log);
@@ -395,11 +409,49 @@ void run_program(const std::string& name, const std::string& package,
                                    end ? end->how() : "a time-out", log.string()));
 }
 
+/// gnuplot without the settings of its user.
+void run_gnuplot(const std::string& script, const fs::path& folder) {
+  run_program("gnuplot", "gnuplot-nox", {"-d", script}, folder);
+}
+
+/// @throws runs::RunError where a picture is missing, not whole or of another size than asked for.
+void check_picture(const std::string& program, const fs::path& file, double width, double height) {
+  const auto size = file.extension() == ".svg" ? svg_size(file) : png_size(file);
+  if (!size) throw runs::RunError(fmt::format("{}: {} left no whole picture", file.string(), program));
+  constexpr double rounding = 1.0;
+  if (std::abs((*size)[0] - width) > rounding || std::abs((*size)[1] - height) > rounding)
+    throw runs::RunError(fmt::format("{}: {} drew {} x {} where {:g} x {:g} was asked for", file.string(),
+                                     program, (*size)[0], (*size)[1], width, height));
+}
+
+/// Width, height and number of pictures of a film, as ffprobe reads them.
+struct FilmSize {
+  int width = 0, height = 0;
+  std::size_t frames = 0;
+};
+FilmSize film_size(const std::string& film, const fs::path& folder) {
+  const fs::path program = program_path("ffprobe", "ffmpeg"), said = folder / "film.txt";
+  runs::Process process(
+      program,
+      {"-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
+       "stream=width,height,nb_read_packets", "-of", "default=noprint_wrappers=1:nokey=1", film},
+      folder, said, runs::Environment::of_helper());
+  const auto end = process.wait(600.0);
+  FilmSize size;
+  if (end && end->good()) std::ifstream(said) >> size.width >> size.height >> size.frames;
+  return size;
+}
+
+/// Pixels of a clip's pictures; video wants even sizes.
+PictureSize clip_size(const Section& section) {
+  const int panels = panels_of(section);
+  return {100 + 360 * std::min(3, panels), 240 + 240 * ((panels + 2) / 3)};
+}
+
 /// gnuplot's commands for one picture of a clip: the panels in rows of three, the time beside them.
 std::string clip_frame(const Page& page, const Section& section, std::size_t number, double top) {
   const int panels = panels_of(section), columns = std::min(3, panels), lines = (panels + 2) / 3;
-  // Video wants even sizes.
-  const int width = 100 + 360 * columns, height = 240 + 240 * lines;
+  const auto [width, height] = clip_size(section);
   Script script;
   reset(script, "");
   script.line(section_style(section));
@@ -420,7 +472,6 @@ std::string clip_frame(const Page& page, const Section& section, std::size_t num
 std::vector<std::string> write_figures(const Page& page, const fs::path& folder) {
   Script script;
   script.line("# Draws the figures of a flowrest report: gnuplot figures.gp");
-  std::vector<std::string> written;
   const auto add = [&](const Block& block) {
     if (const auto* plot = std::get_if<Plot>(&block))
       add_plot(script, page, *plot);
@@ -430,43 +481,62 @@ std::vector<std::string> write_figures(const Page& page, const fs::path& folder)
       add_frames(script, page, *frames);
     else if (const auto* section = std::get_if<Section>(&block))
       add_section(script, page, *section);
-    else
-      return;
-    for (const char* kind : {".svg", ".png"}) written.push_back(id_of(block) + kind);
   };
   if (page.figure) add(*page.figure);
   for (const Chapter& chapter : page.chapters)
     for (const Block& block : chapter.blocks) add(block);
   fs::create_directories(folder);
   runs::write_atomically(folder / "figures.gp", script.text());
-  run_program("gnuplot", "gnuplot-nox", {"figures.gp"}, folder);
-  std::erase_if(written, [&](const std::string& name) { return !fs::exists(folder / name); });
+  // What is there afterwards was drawn now.
+  for (const Drawn& figure : script.drawn())
+    for (const char* kind : {".svg", ".png"}) fs::remove(folder / (figure.id + kind));
+  run_gnuplot("figures.gp", folder);
+  std::vector<std::string> written;
+  for (const Drawn& figure : script.drawn())
+    for (const auto& [kind, scale] : {std::pair{".svg", 1.0}, {".png", png_scale}}) {
+      check_picture("gnuplot", folder / (figure.id + kind), scale * figure.width, scale * figure.height);
+      written.push_back(figure.id + kind);
+    }
   return written;
 }
 
 void write_clip(const Page& page, const Section& section, const fs::path& file, bool quiet) {
   if (panels_of(section) == 0) throw runs::RunError("no run left states to make a clip of");
   program_path("ffmpeg", "ffmpeg");
+  program_path("ffprobe", "ffmpeg");
   const fs::path folder = fs::absolute(file).parent_path() / (file.filename().string() + ".frames");
+  fs::remove_all(folder);
   fs::create_directories(folder);
+  const auto [width, height] = clip_size(section);
   runs::Progress progress("clip", static_cast<double>(section.times.size()), quiet);
   // The scale of heights follows the material but never jitters: it only ever shrinks.
   double top = *section.z.to;
   for (std::size_t i = 0; i < section.times.size(); ++i) {
     top = std::min(top, height_at(section, section.times[i]));
     runs::write_atomically(folder / "frame.gp", clip_frame(page, section, i, top));
-    run_program("gnuplot", "gnuplot-nox", {"frame.gp"}, folder);
+    run_gnuplot("frame.gp", folder);
+    check_picture("gnuplot", folder / fmt::format("{:05}.png", i), width, height);
     progress.update(static_cast<double>(i + 1), fmt::format("{:.3g} s", section.times[i]));
   }
-  const std::string target = fs::absolute(file).string();
-  std::vector<std::string> arguments = {"-y", "-loglevel", "error", "-framerate", "12", "-i", "%05d.png"};
-  if (file.extension() == ".gif")
+  // Under a name that means nothing to ffmpeg, and only a whole film under its own.
+  const bool gif = file.extension() == ".gif";
+  const std::string film = gif ? "film.gif" : "film.webm";
+  std::vector<std::string> arguments = {"-nostdin",   "-y", "-loglevel", "error",
+                                        "-framerate", "12", "-i",        "%05d.png"};
+  if (gif)
     arguments.insert(arguments.end(),
-                     {"-vf", "split[a][b];[a]palettegen=max_colors=128[p];[b][p]paletteuse", target});
+                     {"-vf", "split[a][b];[a]palettegen=max_colors=128[p];[b][p]paletteuse"});
   else
     arguments.insert(arguments.end(),
-                     {"-c:v", "libvpx-vp9", "-crf", "32", "-b:v", "0", "-pix_fmt", "yuv420p", target});
+                     {"-c:v", "libvpx-vp9", "-crf", "32", "-b:v", "0", "-pix_fmt", "yuv420p"});
+  arguments.push_back(film);
   run_program("ffmpeg", "ffmpeg", arguments, folder);
+  const FilmSize made = film_size(film, folder);
+  if (made.width != width || made.height != height || made.frames != section.times.size())
+    throw runs::RunError(fmt::format(
+        "{}: ffmpeg made a film of {} pictures of {} x {} where {} of {} x {} were asked for",
+        (folder / film).string(), made.frames, made.width, made.height, section.times.size(), width, height));
+  fs::rename(folder / film, file);
   fs::remove_all(folder);
   progress.finish(fmt::format("clip: {} ({} frames)", file.string(), section.times.size()));
 }

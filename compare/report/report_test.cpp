@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <regex>
 
 #include "compare/comparison.h"
@@ -12,6 +13,7 @@
 #include "compare/report/browser.h"
 #include "compare/report/figures.h"
 #include "compare/report/page.h"
+#include "compare/report/picture_size.h"
 #include "compare/synthetic_runs.h"
 #include "runs/process.h"
 #include "runs/temporary_folder.h"
@@ -28,6 +30,22 @@ std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
+
+/// A variable as long as it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* text = std::getenv(name)) before_ = text;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
 
 class ReportTest : public testing::Test {
  protected:
@@ -291,6 +309,14 @@ TEST_F(OpenedReportTest, EveryFigureOffersItsData) {
   EXPECT_EQ(page().evaluate("window.saved['measures.csv'].split('\\n').length"), 6);
 }
 
+TEST_F(OpenedReportTest, OpensFromAFolderOfAnyName) {
+  write_slump_report();
+  const std::string name = "a b'c\"d$HOME#f;g{h}(i)ü%20?*[j]";
+  fs::copy(folder / "report", folder / name);
+  open("", name);
+  show("spread");
+}
+
 TEST_F(OpenedReportTest, PrintsToACleanPdf) {
   write_slump_report();
   open();
@@ -427,6 +453,52 @@ TEST_F(ReportTest, AClipShowsEveryTimeOfASection) {
   report::write_clip(page, section, folder / "clip.webm", true);
   EXPECT_THAT(text_of(folder / "clip.webm"), testing::StartsWith("\x1a\x45\xdf\xa3"));
   EXPECT_FALSE(fs::exists(folder / "clip.webm.frames"));
+  const fs::path named = folder / "a b'c\"d$HOME#f;g{h}(i)ü%05d*[j].webm";
+  report::write_clip(page, section, named, true);
+  EXPECT_EQ(fs::file_size(named), fs::file_size(folder / "clip.webm"));
+
+  std::ofstream(folder / "ffmpeg")
+      << "#!/bin/sh\nexec /usr/bin/ffmpeg -loglevel quiet -i 00000.png film.webm\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+  const Variable path("PATH", folder.string() + ":" + std::getenv("PATH"));
+  fs::remove(folder / "clip.webm");
+  EXPECT_THROW(report::write_clip(page, section, folder / "clip.webm", true), runs::RunError)
+      << "one of three times";
+  EXPECT_FALSE(fs::exists(folder / "clip.webm"));
+}
+
+TEST_F(ReportTest, FiguresAreDrawnWithoutTheUsersSettingsInAFolderOfAnyName) {
+  if (!runs::find_program("gnuplot"))
+    GTEST_SKIP() << "gnuplot is not installed (apt-get install gnuplot-nox)";
+  report::write_figures(large_page(1), folder / "plain");
+  std::ofstream(folder / ".gnuplot") << "set title 'mine'\nset decimalsign ','\nexit\n";
+  const Variable home("HOME", folder.string()), number("LC_ALL", "de_DE.UTF-8");
+  const fs::path named = folder / "a b'c\"d$HOME#f;g{h}(i)ü%05d*[j]";
+  report::write_figures(large_page(1), named);
+  EXPECT_EQ(text_of(named / "pareto.svg"), text_of(folder / "plain" / "pareto.svg"));
+  EXPECT_EQ(report::svg_size(named / "pareto.svg"), (report::PictureSize{720, 440}));
+  EXPECT_EQ(report::png_size(named / "pareto.png"), (report::PictureSize{1584, 968}));
+}
+
+TEST_F(ReportTest, FiguresThatAreNotWhatWasAskedForAreRefused) {
+  std::ofstream(folder / "gnuplot") << "#!/bin/sh\n[ -e ../svg ] && cp ../svg pareto.svg\nexit 0\n";
+  fs::permissions(folder / "gnuplot", fs::perms::owner_all);
+  const Variable path("PATH", folder.string() + ":/usr/bin:/bin");
+  const auto refusal = [&]() -> std::string {
+    try {
+      report::write_figures(large_page(1), folder / "figures");
+    } catch (const runs::RunError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  fs::create_directories(folder / "figures");
+  std::ofstream(folder / "figures" / "pareto.svg") << "<svg width=\"720\" height=\"440\"></svg>";
+  EXPECT_THAT(refusal(), HasSubstr("left no whole picture")) << "it was there before";
+  std::ofstream(folder / "svg") << "<svg width=\"720\" height=\"440\">";
+  EXPECT_THAT(refusal(), HasSubstr("left no whole picture"));
+  std::ofstream(folder / "svg") << "<svg width=\"640\" height=\"480\"></svg>";
+  EXPECT_THAT(refusal(), HasSubstr("gnuplot drew 640 x 480 where 720 x 440 was asked for"));
 }
 
 TEST_F(OpenedReportTest, ADuctAndARunWithoutARowOpenToo) {
