@@ -6,18 +6,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/duct_sampler.h"
 #include "foamCases/field_file.h"
+#include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
+#include "foamCases/ranks.h"
 #include "foamCases/rest_monitor.h"
 #include "foamCases/run_state.h"
 #include "foamCases/slump_sampler.h"
@@ -26,10 +28,12 @@
 #include "foamCases/vessel_sampler.h"
 #include "runs/command.h"
 #include "runs/console.h"
+#include "runs/cores.h"
 #include "runs/machine.h"
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_folder.h"
+#include "runs/temporary_folder.h"
 #include "scenes/cost.h"
 #include "scenes/step_limits.h"
 
@@ -43,6 +47,9 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr double poll_interval = 0.05;  // s
+/// By what share the concrete in the mesh may differ from the scene's body at the start: all cases fill it to
+/// round-off.
+constexpr double initial_volume_allowed = 1e-3;
 /// A step this much below the largest, this often in succession, gets nowhere.
 constexpr double collapsed_step = 1e-5;
 constexpr int collapsed_steps = 20;
@@ -53,6 +60,7 @@ constexpr const char* shear_rates_header = "time_s,shear_rate_1_s\n";
 struct Call {
   fs::path program;
   std::vector<std::string> arguments;
+  bool parallel = false;  ///< under mpirun, which tells its ranks the real path of the folder it is in
 };
 
 /// What makes a case's mesh and initial fields, in order, what cuts it up and puts it together, and what
@@ -63,29 +71,24 @@ struct Programs {
   Call solve;
 };
 
-fs::path needed_program(const std::string& name) {
-  if (const auto found = runs::find_program(name)) return *found;
-  throw runs::MissingProgram(fmt::format(
-      "{} is not on the PATH: `flowrest foam` needs OpenFOAM (Debian: apt-get install openfoam)", name));
-}
-
 Programs needed_programs(const scenes::Scene& scene, int ranks) {
   Programs programs;
-  programs.prepare.push_back({needed_program("blockMesh"), {}});
+  programs.prepare.push_back({openfoam_program("blockMesh"), {}});
   if (scene.kind == scenes::Kind::slump && scene.geometry.dimension != scenes::Dimension::quarter) {
-    programs.prepare.push_back({needed_program("setAlphaField"), {}});
-    programs.prepare.push_back({needed_program("setFields"), {}});
+    programs.prepare.push_back({openfoam_program("setAlphaField"), {}});
+    programs.prepare.push_back({openfoam_program("setFields"), {}});
   }
-  if (gate_of(scene)) programs.prepare.push_back({needed_program("createBaffles"), {"-overwrite"}});
-  if (is_vessel(scene)) programs.prepare.push_back({needed_program("setFields"), {}});
-  programs.solve = {needed_program("interFoam"), {}};
+  if (gate_of(scene)) programs.prepare.push_back({openfoam_program("createBaffles"), {"-overwrite"}});
+  if (is_vessel(scene)) programs.prepare.push_back({openfoam_program("setFields"), {}});
+  programs.solve = {openfoam_program("interFoam"), {}};
   if (ranks <= 1) return programs;
-  programs.decompose = Call{needed_program("decomposePar"), {"-force", "-latestTime"}};
-  programs.reconstruct = Call{needed_program("reconstructPar"), {"-newTimes"}};
+  programs.decompose = Call{openfoam_program("decomposePar"), {"-force", "-latestTime"}};
+  programs.reconstruct = Call{openfoam_program("reconstructPar"), {"-newTimes"}};
   // More ranks than cores must not spin against each other.
-  programs.solve = {needed_program("mpirun"),
+  programs.solve = {openfoam_mpirun(),
                     {"--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-np",
-                     std::to_string(ranks), programs.solve.program.string(), "-parallel"}};
+                     std::to_string(ranks), programs.solve.program.string(), "-parallel"},
+                    true};
   return programs;
 }
 
@@ -94,17 +97,6 @@ std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFiel
   if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
   if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
   return std::make_unique<SlumpSampler>(scene, fields, writer, plug_in);
-}
-
-/// Debian's OpenFOAM needs to be told where its etc folder is, and nothing else; Open MPI that root may use
-/// it.
-std::map<std::string, std::string> openfoam_environment() {
-  static const char* folder = "/usr/share/openfoam";
-  std::map<std::string, std::string> environment{{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
-                                                 {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"}};
-  if (std::getenv("WM_PROJECT_DIR") == nullptr && fs::exists(fs::path(folder) / "etc"))
-    environment["WM_PROJECT_DIR"] = folder;
-  return environment;
 }
 
 /// Which of the scene's walls the case does not have, in words; empty where it has them all.
@@ -131,6 +123,15 @@ std::string step_rule(const scenes::Scene& scene, bool plug_in) {
   return rule;
 }
 
+/// A program of OpenFOAM's at work on a case, which it is told by a name that it can read.
+std::unique_ptr<runs::Process> start(const Call& call, const runs::PlainName& place, const fs::path& log) {
+  auto arguments = call.arguments;
+  arguments.insert(arguments.end(), {"-case", place.path().string()});
+  return std::make_unique<runs::Process>(call.program, arguments,
+                                         call.parallel ? place.plain_folder() : place.path(), log,
+                                         openfoam_environment());
+}
+
 void remove_parts(const fs::path& case_directory) {
   for (int rank = CaseFields::ranks_in(case_directory); rank-- > 0;)
     fs::remove_all(case_directory / fmt::format("processor{}", rank));
@@ -145,6 +146,7 @@ class CaseRun {
         options_(options),
         programs_(std::move(programs)),
         state_(state),
+        place_(options.directory / "case"),
         writer_(std::move(writer)),
         case_(options.directory / "case"),
         plug_in_(plug_in_for(scene)),
@@ -200,9 +202,18 @@ class CaseRun {
     status_ = Status::failed;
     fault_ = fault;
     reason_ = reason;
+    name_case_as_reader_knows_it();
     if (fault == runs::Fault::machine || !runs::disk_is_full(options_.directory)) return;
     fault_ = runs::Fault::machine;
     reason_ += "; the disk is full";
+  }
+
+  /// Where the case has another name for OpenFOAM, the reader knows it by its own.
+  void name_case_as_reader_knows_it() {
+    const std::string name = place_.path().string(), own = fs::absolute(case_).lexically_normal().string();
+    for (auto at = reason_.find(name); name != own && at != std::string::npos;
+         at = reason_.find(name, at + own.size()))
+      reason_.replace(at, name.size(), own);
   }
 
   /// A program that ended badly did so by itself, or because the machine failed it, or because somebody who
@@ -224,6 +235,12 @@ class CaseRun {
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();
     info["ranks"] = ranks();
+    info["openfoam_program"] = openfoam_program("interFoam").string();
+    if (ranks() > 1) info["mpirun_program"] = openfoam_mpirun().string();
+    if (const std::string note = too_many_ranks(scene_, ranks(), runs::cores()); !note.empty()) {
+      info["ranks_note"] = note;
+      progress_.note(note);
+    }
     if (const std::string differ = walls_differ(scene_); !differ.empty()) info["walls_differ"] = differ;
     writer_.write();
   }
@@ -266,65 +283,76 @@ class CaseRun {
     if (!programs_.reconstruct || !fs::exists(case_ / "processor0") || fault_ == runs::Fault::machine) return;
     const int asked = runs::InterruptGuard::count();
     const fs::path log_path = case_ / "log.reconstructPar";
-    runs::Process process(programs_.reconstruct->program, programs_.reconstruct->arguments, case_, log_path,
-                          openfoam_environment());
-    while (!process.wait(poll_interval))
-      if (runs::InterruptGuard::count() > asked) return;
-    cpu_by_program_["reconstructPar"] += process.poll()->cpu_s;
-    if (process.poll()->good()) {
+    const auto process = start(*programs_.reconstruct, place_, log_path);
+    while (!process->wait(poll_interval))
+      if (runs::InterruptGuard::count() > std::max(asked, 1)) return;
+    cpu_by_program_["reconstructPar"] += process->poll()->cpu_s;
+    if (process->poll()->good()) {
       remove_parts(case_);
     } else {
       SolverLog log;
       log.feed(FileTail(log_path).read());
-      fail_of("reconstructPar", *process.poll(), log);
+      fail_of("reconstructPar", *process->poll(), log);
     }
   }
 
   bool run_to_end(const Call& call) {
     const std::string name = call.program.filename().string();
     const fs::path log_path = case_ / ("log." + name);
-    runs::Process process(call.program, call.arguments, case_, log_path, openfoam_environment());
-    while (!process.wait(poll_interval))
+    const auto process = start(call, place_, log_path);
+    while (!process->wait(poll_interval))
       if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
         return false;
       }
-    cpu_by_program_[name] += process.poll()->cpu_s;
-    if (process.poll()->good()) return true;
+    cpu_by_program_[name] += process->poll()->cpu_s;
+    if (process->poll()->good()) return true;
     SolverLog log;
     log.feed(FileTail(log_path).read());
-    fail_of(name, *process.poll(), log);
+    fail_of(name, *process->poll(), log);
     return false;
   }
 
   void solve() {
     sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
+    if (!state_ && !starts_with_the_body()) return;
     const fs::path log_path = case_ / "log.interFoam";
-    runs::Process solver(programs_.solve.program, programs_.solve.arguments, case_, log_path,
-                         openfoam_environment());
+    const auto solver = start(programs_.solve, place_, log_path);
     FileTail tail(log_path);
     bool running = true;
     while (running) {
-      running = !solver.wait(poll_interval);
+      running = !solver->wait(poll_interval);
       follow(tail.read(), running);
       if (!running) break;
       if (runs::InterruptGuard::count() > 0) {
         status_ = Status::interrupted;
-        stop(solver);
+        stop(*solver);
       } else if (status_ == Status::failed || status_ == Status::at_rest) {
-        stop(solver);
+        stop(*solver);
       } else {
         continue;
       }
       follow(tail.read(), false);
       running = false;
     }
-    conclude(*solver.poll());
+    conclude(*solver->poll());
+  }
+
+  /// What the programs left as the initial fields holds the scene's body. False where it does not.
+  bool starts_with_the_body() {
+    const double error = gauges().value("initial_volume_error", 0.0);
+    if (std::abs(error) <= initial_volume_allowed) return true;
+    fail(fmt::format(
+        "the concrete in the mesh differs by {:.3g} % from the scene's body at the start, where "
+        "{:g} % are allowed: what {} left are not its initial fields",
+        100.0 * error, 100.0 * initial_volume_allowed, programs_.prepare.back().program.string()));
+    return false;
   }
 
   /// Takes in what the log has gained, and what the solver has written.
   void follow(const std::string& text, bool running) {
     log_.feed(text);
+    say_which();
     for (const auto& step : log_.take_steps()) count(step);
     try {
       sampler_->sample_before(
@@ -337,6 +365,14 @@ class CaseRun {
     }
     watch();
     progress_.update(time(), fmt::format("{:.2f} s, {}", time(), sampler_->progress()));
+  }
+
+  /// Which OpenFOAM it is, once its log tells.
+  void say_which() {
+    if (log_.build().empty() || std::exchange(said_which_, true)) return;
+    writer_.info()["openfoam"] = log_.build();
+    writer_.write();
+    progress_.note(fmt::format("{} ({})", log_.build(), openfoam_program("interFoam").string()));
   }
 
   void count(const SolverStep& step) {
@@ -388,7 +424,7 @@ class CaseRun {
       if (solver.wait(poll_interval)) return;
     solver.signal(SIGTERM);
     if (solver.wait(1.0)) return;
-    solver.signal(SIGKILL);
+    solver.kill_all();
     while (!solver.wait(1.0)) {
     }
   }
@@ -429,7 +465,6 @@ class CaseRun {
     cpu_by_program_["flowrest"] += runs::cpu_seconds() - own_cpu_before_;
     double cpu = 0.0;
     for (const auto& [program, seconds] : cpu_by_program_) cpu += seconds;
-    if (!log_.build().empty()) info["openfoam"] = log_.build();
     info["laws"] = plug_in_ ? "plug-in" : "built-in";
     info["time_reached_s"] = time();
     info["steps"] = steps_;
@@ -463,6 +498,7 @@ class CaseRun {
   const RunOptions& options_;
   Programs programs_;
   std::optional<RunState> state_;
+  runs::PlainName place_;  ///< of the case
   runs::RunWriter writer_;
   fs::path case_;
   std::optional<fs::path> plug_in_;
@@ -474,6 +510,7 @@ class CaseRun {
   Status status_ = Status::running;
   runs::Fault fault_ = runs::Fault::other;
   std::string reason_;
+  bool said_which_ = false;
   std::size_t steps_ = 0;
   SolverStep last_step_;
   double time_step_before_ = 0.0;      ///< s, of the step before that
@@ -487,25 +524,19 @@ class CaseRun {
   double own_cpu_before_ = runs::cpu_seconds();
 };
 
-void check_ranks(const scenes::Scene& scene, int ranks) {
-  if (ranks > 1 && scene.kind == scenes::Kind::duct)
-    throw scenes::SceneError(
-        fmt::format("{}: --ranks {}: a duct is one column of cells; allowed: 1", scene.path.string(), ranks));
-}
-
 /// Makes one case of a decomposed one that was cut off before its parts were put together.
 void join_parts(const fs::path& case_directory, const StateTime& latest) {
   remove_later_times(case_directory, latest);
   const fs::path log = case_directory / "log.reconstructPar";
-  runs::Process process(needed_program("reconstructPar"), {"-newTimes"}, case_directory, log,
-                        openfoam_environment());
-  while (!process.wait(poll_interval))
+  const runs::PlainName place(case_directory);
+  const auto process = start({openfoam_program("reconstructPar"), {"-newTimes"}}, place, log);
+  while (!process->wait(poll_interval))
     if (runs::InterruptGuard::count() > 0)
       throw runs::Interrupted("interrupted before the run was gone on with");
-  if (!process.poll()->good())
+  if (!process->poll()->good())
     throw runs::RunError(
         fmt::format("{}: its parts cannot be put together: reconstructPar ended with {} ({})",
-                    case_directory.string(), process.poll()->how(), log.string()));
+                    case_directory.string(), process->poll()->how(), log.string()));
   remove_parts(case_directory);
 }
 
@@ -529,7 +560,7 @@ RunOutcome begin_run(const scenes::Scene& given, const RunOptions& options, Open
   const scenes::Scene scene = settled(given, plug_in.has_value());
   const int ranks = options.ranks.value_or(1);
   check_supported(scene);
-  check_ranks(scene, ranks);
+  check_ranks(scene, ranks, runs::cores());
   const Programs programs = needed_programs(scene, ranks);
   runs::RunFolder folder = open(scene, Json{{"laws", plug_in ? "plug-in" : "built-in"}});
   if (folder.is_finished()) {
@@ -555,7 +586,7 @@ RunOutcome resume_run(const RunOptions& given, const std::vector<std::string>& s
   const EarlierRun earlier = read_earlier_run(given.directory, set);
   RunOptions options = given;
   options.ranks = given.ranks.value_or(earlier.ranks);
-  check_ranks(earlier.scene, *options.ranks);
+  check_ranks(earlier.scene, *options.ranks, runs::cores());
   plug_in_for(earlier.scene);
   const Programs programs = needed_programs(earlier.scene, *options.ranks);
   const fs::path case_directory = options.directory / "case";

@@ -12,6 +12,7 @@
 #include "foamCases/sampler.h"
 #include "foamCases/test_interrupt.h"
 #include "foamCases/test_scene.h"
+#include "runs/temporary_folder.h"
 
 namespace flowrest::foam {
 namespace {
@@ -23,10 +24,11 @@ using testing::roussel_slump;
 class FakeOpenFoam : public ::testing::Test {
  protected:
   FakeOpenFoam()
-      : scene_(roussel_slump("papanastasiou", {"foam.cell=0.05", "time.end=1", "foam.base_rows=1"})) {
-    setenv("PATH", (folder_.path().string() + ":/usr/bin:/bin").c_str(), 1);
-    for (const char* name : {"blockMesh", "setAlphaField"}) program(name, "exit 0");
-    // 9 rings, 6 + 1 rows: the two inner rings filled to the cone's top.
+      : scene_(roussel_slump("papanastasiou", {"foam.cell=0.05", "time.end=1", "foam.base_rows=1",
+                                               "geometry.cone_radius_top=0.1"})) {
+    setenv("FLOWREST_OPENFOAM_PROGRAMS", folder_.path().c_str(), 1);
+    for (const char* name : {"blockMesh", "setAlphaField", "interFoam"}) program(name, "exit 0");
+    // 9 rings, 6 + 1 rows: the two inner rings filled to the cone's top, which is as wide as its bottom.
     program("setFields",
             "awk 'BEGIN { print \"FoamFile { format ascii; }\\ninternalField nonuniform "
             "List<scalar>\\n63\\n(\";\n"
@@ -35,6 +37,8 @@ class FakeOpenFoam : public ::testing::Test {
     options_.directory = folder_.path() / "run";
     options_.quiet = true;
   }
+
+  ~FakeOpenFoam() override { unsetenv("FLOWREST_OPENFOAM_PROGRAMS"); }
 
   void program(const std::string& name, const std::string& body) {
     const fs::path path = folder_.path() / name;
@@ -154,18 +158,19 @@ TEST_F(FakeOpenFoam, ARunThatEndsIsDone) {
   const auto run = runs::read_run(options_.directory);
   EXPECT_EQ(run.info["status"], "end-time");
   EXPECT_EQ(run.info["openfoam"], "OPENFOAM=fake");
+  EXPECT_EQ(run.info["openfoam_program"], (folder_.path() / "interFoam").string());
   EXPECT_EQ(run.info["steps"], 2);
   EXPECT_NEAR(run.history.at("volume_m3").front(), std::acos(-1.0) * 0.1 * 0.1 * 0.3, 1e-12);
 }
 
 TEST_F(FakeOpenFoam, MissingProgramsAreNamedAndNothingIsWritten) {
   const testing::TemporaryFolder empty;
-  setenv("PATH", empty.path().c_str(), 1);
+  setenv("FLOWREST_OPENFOAM_PROGRAMS", empty.path().c_str(), 1);
   try {
     run_scene(scene_, options_);
     FAIL() << "it ran without OpenFOAM";
   } catch (const runs::MissingProgram& error) {
-    EXPECT_THAT(error.what(), HasSubstr("blockMesh is not on the PATH"));
+    EXPECT_THAT(error.what(), HasSubstr((empty / "blockMesh").string() + " is not there"));
     EXPECT_THAT(error.what(), HasSubstr("apt-get install openfoam"));
   }
   EXPECT_FALSE(fs::exists(options_.directory));
@@ -179,6 +184,39 @@ TEST_F(FakeOpenFoam, AFatalErrorIsTheReason) {
 TEST_F(FakeOpenFoam, AMeshThatFailsIsTheReason) {
   program("blockMesh", "echo '--> FOAM FATAL IO ERROR: '\necho 'no vertices'\nexit 1");
   EXPECT_THAT(failure(), HasSubstr("blockMesh ended with exit code 1: FOAM FATAL IO ERROR: no vertices"));
+}
+
+TEST_F(FakeOpenFoam, InitialFieldsThatAreNotTheBodyEndTheRun) {
+  program("interFoam", step(0.5, 0.5) + step(1.0, 0.5) + "echo End");
+  program(
+      "setFields",
+      "awk 'BEGIN { print \"FoamFile { format ascii; }\\ninternalField nonuniform List<scalar>\\n63\\n(\";\n"
+      "  for (i = 0; i < 63; ++i) print (i % 9 < 1 && i < 54) ? 1 : 0; print \")\\n;\" }' > "
+      "0/alpha.concrete");
+  EXPECT_THAT(failure(),
+              HasSubstr("the concrete in the mesh differs by -75 % from the scene's body at the start"));
+  EXPECT_FALSE(fs::exists(options_.directory / "case" / "log.interFoam"));
+}
+
+TEST_F(FakeOpenFoam, AFieldOfAnotherMeshEndsTheRun) {
+  program("interFoam", step(0.5, 0.5) +
+                           "mkdir 0.5; cp 0/U 0.5/; sed 's/^63$/62/' 0/alpha.concrete > "
+                           "0.5/alpha.concrete\n" +
+                           step(1.0, 0.5) + "sleep 60");
+  EXPECT_THAT(failure(), HasSubstr("it holds 62 cells, the mesh has 63"));
+}
+
+/// OpenFOAM reads none of these in a path; its programs know the case by another, the reader by its own.
+TEST_F(FakeOpenFoam, ACaseIsReachedThroughAPathThatCanBeRead) {
+  options_.directory = folder_.path() / "a b'c\"d$e#f;g{h(iö" / "run";
+  program("interFoam", "echo $PWD > path\n" + step(0.5, 0.5) +
+                           "echo '--> FOAM FATAL ERROR: '\necho \"file $PWD/0/U\"\nexit 1");
+  const fs::path own = options_.directory / "case";
+  EXPECT_THAT(failure(), HasSubstr("FOAM FATAL ERROR: file " + own.string() + "/0/U"));
+  std::string path = testing::text_of(own / "path");
+  path.pop_back();
+  EXPECT_TRUE(runs::is_plain(path)) << path;
+  EXPECT_FALSE(fs::exists(path)) << "the link stays behind";
 }
 
 TEST_F(FakeOpenFoam, ACrashIsTheReason) {

@@ -12,6 +12,7 @@
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
+#include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/test_scene.h"
 #include "runs/process.h"
@@ -67,9 +68,7 @@ class InclinedLayer : public ::testing::Test {
     replace("0.orig/p_rgh", "plates {", "lid { type prghPressure; p uniform 0; value uniform 0; } plates {");
     replace("0.orig/alpha.concrete", "plates {", "lid { type zeroGradient; } plates {");
     replace("constant/g", "(0 0 0)", fmt::format("(0 {} 0)", -gravity * std::cos(incline)));
-    std::map<std::string, std::string> environment;
-    if (std::getenv("WM_PROJECT_DIR") == nullptr) environment["WM_PROJECT_DIR"] = "/usr/share/openfoam";
-    runs::Process process(case_ / "Allrun", {}, case_, folder_.path() / "log", environment);
+    runs::Process process(case_ / "Allrun", {}, case_, folder_.path() / "log", openfoam_environment());
     EXPECT_TRUE(process.wait(120.0)) << "it takes too long";
     EXPECT_TRUE(process.poll()->good()) << testing::text_of(folder_.path() / "log");
   }

@@ -10,6 +10,7 @@
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
+#include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/sampler.h"
 #include "foamCases/test_scene.h"
@@ -72,14 +73,12 @@ class OneCell : public ::testing::Test {
     std::ofstream(last / "U", std::ios::binary) << text;
     replace(case_ / "sceneParameters", "endTime             " + old_end + ";",
             fmt::format("endTime {};", end));
-    start(*runs::find_program("interFoam"));
+    start(openfoam_program("interFoam"));
   }
 
   void start(const fs::path& program) {
-    std::map<std::string, std::string> environment;
-    if (std::getenv("WM_PROJECT_DIR") == nullptr) environment["WM_PROJECT_DIR"] = "/usr/share/openfoam";
     runs::Process process(program.is_absolute() ? program : case_ / program, {}, case_,
-                          folder_.path() / "log", environment);
+                          folder_.path() / "log", openfoam_environment());
     ASSERT_TRUE(process.wait(120.0)) << "it takes too long";
     ASSERT_TRUE(process.poll()->good()) << testing::text_of(folder_.path() / "log");
   }

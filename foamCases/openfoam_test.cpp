@@ -1,9 +1,13 @@
 // Runs of the real interFoam, short and coarse; skipped where OpenFOAM is not installed.
+#include "foamCases/openfoam.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
@@ -189,6 +193,69 @@ TEST_F(OpenFoam, AProlongedRunIsTheOneOfThatLength) {
   EXPECT_EQ(std::count(time.begin(), time.end(), first_end), 0) << "a row for the first end's sake stayed";
   // The time that a state is named by is rounded to 8 digits, and so is the step after it.
   EXPECT_NEAR(result.history.at("spread_mm").back(), whole.history.at("spread_mm").back(), 1e-4);
+}
+
+scenes::Scene short_dam_break(const char* end = "0.06") {
+  return scenes::load_scene("dam-break", {{"foam.cell=0.06", "geometry.tank_length=2.4",
+                                           std::string("time.end=") + end, "output.history_interval=0.01"},
+                                          std::nullopt});
+}
+
+/// Whatever a shell has sourced, a home holds or lies first on the PATH.
+TEST_F(OpenFoam, TheOneItWasBuiltWithIsRunWithoutAnyonesSettings) {
+  const double expected = run(short_dam_break()).history.at("front_mm").back();
+  const TemporaryFolder home;
+  fs::create_directories(home / ".OpenFOAM");
+  std::ofstream(home / ".OpenFOAM/controlDict") << "OptimisationSwitches { fileHandler collated; }\n";
+  for (const char* name : {"interFoam", "blockMesh", "setFields", "mpirun", "mpirun.openmpi"}) {
+    std::ofstream(home / name) << "#!/bin/sh\nexit 1\n";
+    fs::permissions(home / name, fs::perms::owner_all);
+  }
+  const std::string path = std::getenv("PATH"), before = std::getenv("HOME") ? std::getenv("HOME") : "/";
+  const std::pair<const char*, std::string> settings[] = {{"PATH", home.path().string() + ":" + path},
+                                                          {"HOME", home.path().string()},
+                                                          {"FOAM_FILEHANDLER", "collated"},
+                                                          {"WM_PROJECT_DIR", "/opt/foreign"},
+                                                          {"FOAM_CONTROLDICT", "{ fileHandler none; }"},
+                                                          {"LD_LIBRARY_PATH", home.path().string()},
+                                                          {"OMPI_MCA_btl", "none"}};
+  for (const auto& [name, value] : settings) setenv(name, value.c_str(), 1);
+  RunOptions options;
+  options.directory = folder_.path() / "parts";
+  options.quiet = true;
+  options.ranks = 2;
+  EXPECT_EQ(run_scene(short_dam_break(), options).status, runs::Status::end_time);
+  for (const auto& [name, value] : settings) unsetenv(name);
+  setenv("PATH", path.c_str(), 1);
+  setenv("HOME", before.c_str(), 1);
+  const auto result = runs::read_run(options.directory);
+  EXPECT_NEAR(result.history.at("front_mm").back(), expected, 0.1);
+  EXPECT_EQ(result.info["openfoam_program"], openfoam_program("interFoam").string());
+}
+
+/// It reads none of these characters itself, nor a path of this length.
+TEST_F(OpenFoam, ACaseMayLieUnderAnyName) {
+  const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
+  const fs::path place = folder_.path() / "a place";
+  fs::create_directories(place);
+  setenv("TMPDIR", place.c_str(), 1);
+  for (const std::string& name :
+       {std::string("a b'c\"d$HOME#f;g{h}(i)ü*[j]\\"), std::string("processor3"), std::string(150, 'l')}) {
+    RunOptions options;
+    options.directory = place / name / name;
+    options.quiet = true;
+    options.ranks = 2;
+    const fs::path history = options.directory / "history.csv";
+    {
+      const auto interrupt = testing::interrupt_at(history, 500);
+      ASSERT_EQ(run_scene(short_dam_break("20"), options).status, runs::Status::interrupted) << name;
+    }
+    options.ranks = 1;
+    const auto interrupt = testing::interrupt_at(history, fs::file_size(history));
+    EXPECT_EQ(resume_run(options).status, runs::Status::interrupted) << name;
+    EXPECT_GE(runs::read_run(options.directory).history.rows(), 2U) << name;
+  }
+  setenv("TMPDIR", before.c_str(), 1);
 }
 
 class PlugIn : public OpenFoam {
