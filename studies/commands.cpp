@@ -70,6 +70,7 @@ void run_study(const StudyOptions& options) {
   const std::vector<Point> points = expand(study, options.cut);
   if (options.list) return print_list(points);
   const Folder folder{fs::absolute(options.output.empty() ? "out/studies/" + study.name : options.output)};
+  check_folder(folder, options.workflow);
   const runs::FolderLock lock(folder.root);
   const std::size_t missing = prepare(folder, study, points);
   int code = 0;

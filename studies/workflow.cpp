@@ -7,8 +7,10 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "runs/console.h"
 #include "runs/cores.h"
@@ -16,6 +18,7 @@
 #include "runs/process.h"
 #include "runs/progress.h"
 #include "runs/run_directory.h"
+#include "runs/temporary_folder.h"
 
 namespace flowrest::studies {
 
@@ -73,22 +76,32 @@ std::size_t ended(const Folder& folder, const std::vector<const Point*>& runs) {
       runs.begin(), runs.end(), [&](const Point* p) { return fs::exists(folder.mark(p->id)); }));
 }
 
-std::vector<std::string> snakemake_arguments(const Folder& folder, const WorkflowOptions& options) {
+/// A profile by a name that Snakemake takes: it looks for the characters of patterns in it.
+std::optional<runs::PlainName> profile_of(const WorkflowOptions& options) {
+  if (options.profile.empty()) return std::nullopt;
+  return std::optional<runs::PlainName>(std::in_place, options.profile);
+}
+
+/// What Snakemake and the jobs below it are told. Jobs are runs of this program, so what that is told goes
+/// along; its cache and what it looks for in a home lie in the study's folder, which every machine of a
+/// cluster sees.
+runs::Environment snakemake_environment(const Folder& folder) {
+  auto environment = runs::Environment::with_home(folder.root / ".snakemake" / "home");
+  return environment.set("PYTHONNOUSERSITE", "1").keep("TMPDIR=").keep("LD_LIBRARY_PATH=").keep("OMP_");
+}
+
+std::vector<std::string> snakemake_arguments(const std::optional<runs::PlainName>& profile,
+                                             const WorkflowOptions& options) {
   const int cores = options.cores > 0 ? options.cores : runs::cores();
-  // The lock of the folder is ours and dies with its holders; Snakemake's would outlive a kill.
-  std::vector<std::string> arguments = {"--snakefile",
-                                        (folder.root / "Snakefile").string(),
-                                        "--directory",
-                                        folder.root.string(),
-                                        "--nolock",
-                                        "--keep-going",
-                                        "--rerun-incomplete",
-                                        "--rerun-triggers",
-                                        "mtime"};
-  if (options.profile.empty())
+  // The lock of the folder is ours and dies with its holders; Snakemake's would outlive a kill. It is at home
+  // in the folder, whose name means nothing to it.
+  std::vector<std::string> arguments = {"--snakefile",      "Snakefile",  "--nolock",
+                                        "--keep-going",     "--no-hooks", "--rerun-incomplete",
+                                        "--rerun-triggers", "mtime"};
+  if (!profile)
     arguments.insert(arguments.end(), {"--cores", std::to_string(cores)});
   else
-    arguments.insert(arguments.end(), {"--profile", fs::absolute(options.profile).string()});
+    arguments.insert(arguments.end(), {"--profile", profile->path().string()});
   arguments.insert(arguments.end(), options.more.begin(), options.more.end());
   return arguments;
 }
@@ -110,6 +123,15 @@ std::string tail_of(const fs::path& log) {
 }
 
 }  // namespace
+
+void check_folder(const Folder& folder, const WorkflowOptions& options) {
+  const std::string path = folder.root.string();
+  if (options.profile.empty() || path.find_first_of("$`\"\\") == std::string::npos) return;
+  throw runs::RunError(
+      fmt::format("{}: with --profile Snakemake hands this path to a shell, which would read $, `, \" and \\ "
+                  "in it; allowed: a folder (-o) without them",
+                  path));
+}
 
 std::size_t prepare(const Folder& folder, const Study& study, const std::vector<Point>& points) {
   for (const char* name : {"jobs", "runs", "logs", "ended"}) fs::create_directories(folder.root / name);
@@ -139,7 +161,9 @@ int run_workflow(const Folder& folder, const Study& study, const std::vector<Poi
   const runs::InterruptGuard guard;
   runs::Progress progress("study " + study.name, static_cast<double>(runs.size()), options.quiet);
   const fs::path log = folder.root / "snakemake.log";
-  runs::Process process(*snakemake, snakemake_arguments(folder, options), folder.root, log, {});
+  const auto profile = profile_of(options);
+  runs::Process process(*snakemake, snakemake_arguments(profile, options), folder.root, log,
+                        snakemake_environment(folder));
   bool interrupted = false;
   std::size_t shown = runs.size() + 1;
   while (!process.poll()) {

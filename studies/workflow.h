@@ -17,6 +17,9 @@ struct WorkflowOptions {
   bool quiet = false;
 };
 
+/// @throws runs::RunError where the folder has a name under which the profile's jobs would not be found.
+void check_folder(const Folder&, const WorkflowOptions&);
+
 /// Writes what is to be run: jobs.json, a scene for every job, the Snakefile; and takes away every mark whose
 /// run does not stand up to it. @return the jobs still to be made.
 std::size_t prepare(const Folder&, const Study&, const std::vector<Point>&);

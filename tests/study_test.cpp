@@ -220,11 +220,64 @@ TEST_F(StudyCommand, MakesNoRunTwiceAndOnlyThoseThatWereTamperedWith) {
 }
 
 TEST_F(StudyCommand, WithoutSnakemakeSaysHowToGetIt) {
-  runs::Process process(program, arguments("out"), folder, folder / "log", {{"PATH", "/nonexistent"}});
+  runs::Process process(program, arguments("out"), folder, folder / "log", {{"PATH", "/dev/null/none"}});
   const auto end = process.wait(longest_wait);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->exit_code, 4);
   EXPECT_NE(log().find("apt-get install snakemake"), std::string::npos) << log();
+}
+
+TEST_F(StudyCommand, NeedsNoHomeAndNoFolderOfAPlainName) {
+  const std::string nasty = "a b'c\"d$HOME#f;g{h}(i)ü*[j]";
+  fs::create_directories(folder / nasty);
+  // Settings that would end it, were they read.
+  for (const std::map<std::string, std::string>& told :
+       {std::map<std::string, std::string>{{"HOME", "/dev/null/home"}, {"SNAKEMAKE_PROFILE", "none"}},
+        {{"HOME", ""}, {"XDG_CACHE_HOME", "/dev/null/cache"}, {"PYTHONHOME", "/dev/null/none"}}}) {
+    const fs::path output = folder / nasty / std::to_string(told.size());
+    runs::Process process(program, arguments(output.string()), folder, folder / "log", told);
+    const auto end = process.wait(longest_wait);
+    ASSERT_TRUE(end && end->good()) << log();
+    EXPECT_FALSE(process.any_left());
+  }
+}
+
+TEST_F(StudyCommand, AFolderInWhichAClustersJobsWouldNotBeFoundIsRefused) {
+  for (const std::string name : {"a$HOME", "a`b", "a\"b", "a\\b"}) {
+    std::vector<std::string> more = {"study",     (folder / "small.toml").string(),
+                                     "-o",        (folder / name).string(),
+                                     "--profile", (folder / "profile").string()};
+    runs::Process process(program, more, folder, folder / "log", {});
+    const auto end = process.wait(longest_wait);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->exit_code, 2) << log();
+    EXPECT_NE(log().find("allowed: a folder (-o) without them"), std::string::npos) << log();
+    EXPECT_FALSE(fs::exists(folder / name));
+  }
+}
+
+TEST_F(StudyCommand, InterruptedTwiceNothingIsLeft) {
+  std::ofstream(folder / "small.toml") << text.substr(0, text.find("[settings]"))
+                                       << "[settings]\nmpm.cell = 0.0025\n[[sweep]]\nname = \"MPM\"\n";
+  MarkedProcesses marked(folder.string());
+  runs::Process process(program, arguments("out"), folder, folder / "log", marked.environment());
+  const auto begun = [&] {
+    for (const auto& run : fs::recursive_directory_iterator(folder / "out"))
+      if (run.path().filename() == "history.csv") return true;
+    return false;
+  };
+  const auto latest = std::chrono::steady_clock::now() + std::chrono::duration<double>(longest_wait);
+  while (!fs::exists(folder / "out") || !begun()) {
+    ASSERT_LT(std::chrono::steady_clock::now(), latest) << log();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  process.signal(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  process.signal(SIGINT);
+  const auto end = process.wait(longest_wait);
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->exit_code, 130) << log();
+  EXPECT_FALSE(process.any_left());
 }
 
 TEST_F(StudyCommand, ARunThatTakesTooLongIsStoppedAndSaid) {

@@ -76,6 +76,7 @@ void run(Arguments& arguments) {
   const auto wanted = plan(options);
   const Folder folder{fs::absolute(options.folder)};
   if (arguments.list) return print_list(wanted, folder);
+  check_folder(folder, arguments.workflow);
   const runs::FolderLock lock(folder.root);
   constexpr double day = 86400.0;
   Study study;
