@@ -14,7 +14,9 @@
 #include "foamCases/quarter_grid.h"
 #include "foamCases/vessel_mesh.h"
 #include "foamCases/wedge_grid.h"
+#include "runs/folder.h"
 #include "runs/run_directory.h"
+#include "scenes/installation.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::foam {
@@ -315,7 +317,7 @@ std::size_t mesh_cells(const Scene& scene) {
 fs::path cases_folder() {
   if (const char* folder = std::getenv("FLOWREST_FOAM_CASES"); folder != nullptr && *folder != '\0')
     return folder;
-  return FLOWREST_FOAM_CASES_FOLDER;
+  return scenes::shared_folder("foamCases");
 }
 
 std::string solved_components(const Scene& scene) {
@@ -358,8 +360,7 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
     fs::create_directories(directory);
     for (const auto& entry : fs::directory_iterator(source))
       if (belongs_to_case(entry.path().filename()))
-        fs::copy(entry.path(), directory / entry.path().filename(),
-                 fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+        runs::copy_writable(entry.path(), directory / entry.path().filename());
     fs::remove_all(directory / "constant" / "polyMesh");
     if (is_quarter(scene)) write_initial_fraction(scene, directory / "0.orig" / "alpha.concrete");
     if (is_vessel(scene))
@@ -368,7 +369,7 @@ void fill_case(const Scene& scene, const fs::path& directory, const std::optiona
     fs::remove(baffles);
     if (gate_of(scene)) runs::write_atomically(baffles, gate_baffles(scene));
     fs::remove_all(directory / "0");
-    fs::copy(directory / "0.orig", directory / "0", fs::copy_options::recursive);
+    runs::copy_writable(directory / "0.orig", directory / "0");
     fs::remove(directory / plug_in_link);
     if (plug_in) fs::create_symlink(*plug_in, directory / plug_in_link);
   } catch (const fs::filesystem_error& fault) {

@@ -14,7 +14,7 @@ namespace flowrest::foam {
 /// @throws scenes::SceneError naming what it cannot and what is allowed.
 void check_supported(const scenes::Scene&);
 
-/// The folder of the cases: FLOWREST_FOAM_CASES where set, else the source tree's.
+/// The folder of the cases: FLOWREST_FOAM_CASES where set, else those that flowrest brings.
 std::filesystem::path cases_folder();
 
 /// Cells of a duct from plate to plate: foam.cell fitted to its height.

@@ -6,6 +6,7 @@
 
 #include "foamCases/vessel_mesh.h"
 #include "runs/run_directory.h"
+#include "scenes/installation.h"
 
 namespace flowrest::foam {
 
@@ -30,14 +31,14 @@ std::optional<fs::path> find_plug_in() {
   if (const char* given = std::getenv("FLOWREST_RHEOLOGY"); given != nullptr && *given != '\0') {
     path = given;
   } else {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    path = program.parent_path().parent_path() / "lib" / library;
+    path = scenes::openfoam_library(library);
   }
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
   return fs::absolute(path);
 }
+
+std::string openfoam_of_plug_in() { return FLOWREST_OPENFOAM_VERSION; }
 
 Scene settled(Scene scene, bool plug_in) {
   constexpr int rows = 4;

@@ -2,15 +2,20 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "scenes/scene.h"
 
 /// The rheology plug-in: flowrest's own laws for OpenFOAM, a library built beside the programs.
 namespace flowrest::foam {
 
-/// The library: FLOWREST_RHEOLOGY where set, else lib/ beside the folder of the running program; nothing
-/// where it was not built.
+/// The library: FLOWREST_RHEOLOGY where set, else the one that flowrest brings; nothing where it was not
+/// built.
 std::optional<std::filesystem::path> find_plug_in();
+
+/// The version of OpenFOAM that the library was compiled against, such as "1912.200626-1"; empty where it was
+/// not built.
+std::string openfoam_of_plug_in();
 
 /// The library a scene's run loads, or nothing where it takes OpenFOAM's own laws: as foam.laws and the model
 /// say.

@@ -7,6 +7,7 @@
 
 #include "scenes/check.h"
 #include "scenes/document.h"
+#include "scenes/installation.h"
 #include "scenes/names.h"
 #include "scenes/resolve.h"
 #include "scenes/schema.h"
@@ -57,6 +58,12 @@ fs::path find_scene(const std::string& scene, const fs::path& folder) {
     if (fs::exists(place / (scene + ".toml"), error)) return place / (scene + ".toml");
   }
   const std::vector<std::string> names = scene_names(scenes_folder());
+  if (names.empty())
+    throw SceneError(
+        fmt::format("unknown scene {}: no scenes are in {}; allowed: a path to a .toml file, or "
+                    "FLOWREST_SCENES naming the folder "
+                    "of the scenes",
+                    quoted(scene), scenes_folder().string()));
   const std::string near = nearest(scene, names);
   throw SceneError(fmt::format("unknown scene {}{}; allowed: a path to a .toml file, or {}", quoted(scene),
                                near.empty() ? "" : ", nearest is " + near, joined(names)));
@@ -278,7 +285,7 @@ void check_model_has_effect(const Scene& scene, const std::vector<std::string>& 
 
 std::filesystem::path scenes_folder() {
   const char* folder = std::getenv("FLOWREST_SCENES");
-  return folder && *folder ? fs::path(folder) : fs::path(FLOWREST_SCENES_FOLDER);
+  return folder && *folder ? fs::path(folder) : shared_folder("scenes");
 }
 
 std::vector<SceneSummary> list_scenes() {

@@ -357,7 +357,7 @@ struct SceneSummary {
 /// Every scene in the scenes folder, by name.
 std::vector<SceneSummary> list_scenes();
 
-/// FLOWREST_SCENES where set, else the source tree's scenes folder.
+/// FLOWREST_SCENES where set, else the scenes that flowrest brings.
 std::filesystem::path scenes_folder();
 
 /// @throws SceneError naming the allowed names and the nearest one.

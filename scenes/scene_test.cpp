@@ -367,6 +367,12 @@ TEST_F(SceneFolder, ASceneIsFoundByNameAndByPath) {
   EXPECT_EQ(load_scene(path).title, "A slump");
 }
 
+TEST_F(SceneFolder, WhereNoScenesAreThatIsSaid) {
+  EXPECT_EQ(refusal("roussel-slump"),
+            "unknown scene \"roussel-slump\": no scenes are in " + folder_.string() +
+                "; allowed: a path to a .toml file, or FLOWREST_SCENES naming the folder of the scenes");
+}
+
 TEST_F(SceneFolder, AnUnknownSceneIsRefusedWithTheNearest) {
   write("small-slump.toml", slump_text);
   write("large-duct.toml", duct_text);

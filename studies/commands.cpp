@@ -1,6 +1,7 @@
 #include "studies/commands.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <memory>
 #include <set>
@@ -9,6 +10,7 @@
 #include "runs/folder_lock.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "scenes/installation.h"
 #include "scenes/text.h"
 #include "studies/accuracy.h"
 #include "studies/results.h"
@@ -65,8 +67,33 @@ bool has_failure(const Results& results) {
   return false;
 }
 
+/// A folder as it is named from here, else the profile of that name that flowrest brings.
+WorkflowOptions with_profile(WorkflowOptions options) {
+  const fs::path ours = scenes::shared_folder("workflow") / options.profile;
+  std::error_code error;
+  if (!options.profile.empty() && !fs::exists(options.profile, error) &&
+      fs::exists(ours / "config.yaml", error))
+    options.profile = ours.string();
+  return options;
+}
+
+fs::path kept_file(const Study& study) {
+  return scenes::scenes_folder() / "studies" / (study.name + ".known.json");
+}
+
+/// Before hours of runs: whoever installed flowrest may keep what was found beside its scenes, others may
+/// not.
+void check_may_be_kept(const Study& study) {
+  const fs::path folder = kept_file(study).parent_path();
+  if (access(folder.c_str(), W_OK) == 0) return;
+  throw scenes::SceneError(fmt::format(
+      "--keep: {} cannot be written into; allowed: FLOWREST_SCENES naming a copy of {} that can be",
+      folder.string(), folder.parent_path().string()));
+}
+
 void run_study(const StudyOptions& options) {
   const Study study = load_study(options.study);
+  if (options.keep) check_may_be_kept(study);
   const std::vector<Point> points = expand(study, options.cut);
   if (options.list) return print_list(points);
   const Folder folder{fs::absolute(options.output.empty() ? "out/studies/" + study.name : options.output)};
@@ -74,12 +101,13 @@ void run_study(const StudyOptions& options) {
   const runs::FolderLock lock(folder.root);
   const std::size_t missing = prepare(folder, study, points);
   int code = 0;
-  if (missing > 0 && !options.report_only) code = run_workflow(folder, study, points, options.workflow);
+  if (missing > 0 && !options.report_only)
+    code = run_workflow(folder, study, points, with_profile(options.workflow));
   const Results results = collect(folder, study, points, options.cut);
   write_results(folder, results);
   print_results(results, folder, options.json);
   if (options.keep) {
-    const fs::path kept = scenes::scenes_folder() / "studies" / (study.name + ".known.json");
+    const fs::path kept = kept_file(study);
     runs::write_atomically(kept, knowledge_json(results).dump(1) + "\n");
     fmt::print("Kept for `flowrest run --accuracy`: {}\n", kept.string());
   }
@@ -100,8 +128,9 @@ void add_study(CLI::App& app) {
                    ->check(CLI::PositiveNumber);
   auto* profile =
       command
-          ->add_option("--profile", options->workflow.profile,
-                       "A Snakemake profile: where the runs are made, such as studies/workflow/slurm")
+          ->add_option(
+              "--profile", options->workflow.profile,
+              "A Snakemake profile: where the runs are made, a folder, or slurm, which flowrest brings")
           ->excludes(jobs);
   auto* report_only =
       command->add_flag("--report-only", options->report_only, "Make no run; report on those there are")

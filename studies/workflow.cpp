@@ -19,6 +19,7 @@
 #include "runs/progress.h"
 #include "runs/run_directory.h"
 #include "runs/temporary_folder.h"
+#include "scenes/installation.h"
 
 namespace flowrest::studies {
 
@@ -67,8 +68,12 @@ void write_if_new(const fs::path& path, const std::string& text) {
 }
 
 void copy_workflow(const Folder& folder) {
-  const fs::path from = FLOWREST_WORKFLOW_FOLDER;
-  fs::copy_file(from / "Snakefile", folder.root / "Snakefile", fs::copy_options::overwrite_existing);
+  const fs::path from = scenes::shared_folder("workflow") / "Snakefile";
+  std::error_code error;
+  if (!fs::exists(from, error))
+    throw runs::RunError(fmt::format(
+        "{}: the workflow of studies is not there: flowrest is not installed whole", from.string()));
+  runs::copy_writable(from, folder.root / "Snakefile");
 }
 
 std::size_t ended(const Folder& folder, const std::vector<const Point*>& runs) {

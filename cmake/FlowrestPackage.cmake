@@ -1,0 +1,31 @@
+# `cpack` in a build folder makes a Debian package. The libraries that it depends on are looked up in what was linked; the
+# programs that flowrest calls are listed here. Where one of those is missing, flowrest says so and how to get it (exit 4): they
+# are recommended, which apt installs unless it is told not to.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME flowrest)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "when fresh concrete stops, where, and which simulation says so")
+set(CPACK_PACKAGE_CONTACT "the flowrest authors")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "")
+
+set(recommended gmsh)
+if(FLOWREST_FOAM)
+  # The plug-in fits the version that it was compiled against and no other.
+  if(FLOWREST_OPENFOAM_VERSION MATCHES "^([0-9]+)")
+    math(EXPR next "${CMAKE_MATCH_1} + 1")
+    list(APPEND recommended "openfoam (>= ${CMAKE_MATCH_1})" "openfoam (<< ${next})")
+  else()
+    list(APPEND recommended openfoam)
+  endif()
+endif()
+if(FLOWREST_COMPARE)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS libjs-chart.js)
+  list(APPEND recommended gnuplot-nox snakemake)
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, slurm-client, paraview")
+endif()
+list(JOIN recommended ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)
+include(CPack)
