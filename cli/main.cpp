@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "cli/run_command.h"
+#include "cli/version.h"
 #include "mpm/commands.h"
 #include "runs/console.h"
 #include "runs/machine.h"
@@ -55,7 +56,7 @@ int main(int argc, char** argv) {
       "flowrest: when does fresh concrete stop, where, and which simulation can be trusted to say so?"};
   app.require_subcommand(1);
   app.footer(exit_codes);
-  app.set_version_flag("--version", FLOWREST_VERSION);
+  app.set_version_flag("--version", cli::version_text, "Say version, commit, build, parts and OpenFOAM");
   scenes::add_commands(app);
   mpm::add_commands(app);
 #ifdef FLOWREST_HAS_FOAM

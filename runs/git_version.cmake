@@ -1,9 +1,14 @@
-# Writes HEADER with the commit of SOURCE and whether tracked files differ from it. Without git or a repository the hash
-# is "unknown". No lock is taken, so that a build never disturbs a git command running beside it.
+# Writes HEADER with the commit of SOURCE and whether tracked files differ from it. Without git or a repository of its own (a
+# tarball, maybe unpacked inside somebody else's repository) the commit is the one that git wrote into cmake/commit.txt when it
+# made the tarball, else "unknown". No lock is taken, so that a build never disturbs a git command running beside it.
 set(hash "unknown")
 set(dirty "false")
+file(STRINGS ${SOURCE}/cmake/commit.txt archived LIMIT_COUNT 1)
+if(archived MATCHES "^[0-9a-f]+$")
+  set(hash "${archived}")
+endif()
 find_program(GIT git)
-if(GIT)
+if(GIT AND EXISTS ${SOURCE}/.git)
   execute_process(COMMAND ${GIT} rev-parse HEAD WORKING_DIRECTORY ${SOURCE}
     OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
   if(NOT failed)
