@@ -70,7 +70,7 @@ void check_model(const Scene& scene) {
 }
 
 bool is_quarter(const Scene& scene) {
-  return scene.kind == scenes::Kind::slump && scene.geometry.dimension == scenes::Dimension::quarter;
+  return scene.kind() == scenes::Kind::slump && scene.geometry.dimension == scenes::Dimension::quarter;
 }
 
 std::string quarter_mesh_parameters(const Scene& scene) {
@@ -146,7 +146,7 @@ const char* wall(const Scene& scene) { return scene.base.law == scenes::Wall::sl
 /// The velocity's condition on a wall as a patch takes it in.
 std::string wall_condition(const Scene& scene) {
   // OpenFOAM's own slip is wrong on walls that lean, as forces are (rheology/inclined_cells.h).
-  const bool leans = scene.kind == scenes::Kind::v_funnel || scene.kind == scenes::Kind::l_box;
+  const bool leans = scene.kind() == scenes::Kind::v_funnel || scene.kind() == scenes::Kind::l_box;
   if (scene.base.law == scenes::Wall::slip && leans) return "{ type coulombFriction; friction 0; }";
   if (scene.base.law != scenes::Wall::friction) return fmt::format("{{ type {}; }}", wall(scene));
   return fmt::format("{{ type coulombFriction; friction {}; }}", scene.base.friction);
@@ -212,7 +212,7 @@ std::string vessel_parameters(const Scene& scene) {
 
 std::string geometry_parameters(const Scene& scene) {
   if (is_vessel(scene)) return vessel_parameters(scene);
-  return scene.kind == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene);
+  return scene.kind() == scenes::Kind::duct ? duct_parameters(scene) : slump_parameters(scene);
 }
 
 std::string text_of(const fs::path& path) {
@@ -279,7 +279,7 @@ std::string gate_baffles(const Scene& scene) {
 
 void check_supported(const Scene& scene) {
   check_model(scene);
-  if (scene.kind == scenes::Kind::duct) {
+  if (scene.kind() == scenes::Kind::duct) {
     duct_cells(scene);
     return;
   }
@@ -297,7 +297,7 @@ void check_supported(const Scene& scene) {
 }
 
 std::string case_name(const Scene& scene) {
-  return scenes::to_string(scene.kind) + (is_quarter(scene) ? "-quarter" : "");
+  return scenes::to_string(scene.kind()) + (is_quarter(scene) ? "-quarter" : "");
 }
 
 std::size_t duct_cells(const Scene& scene) {
@@ -309,7 +309,7 @@ std::size_t duct_cells(const Scene& scene) {
 }
 
 std::size_t mesh_cells(const Scene& scene) {
-  if (scene.kind == scenes::Kind::duct) return duct_cells(scene);
+  if (scene.kind() == scenes::Kind::duct) return duct_cells(scene);
   if (is_vessel(scene)) return mesh_cells(vessel_mesh(scene)).size();
   return is_quarter(scene) ? quarter_grid(scene).cells() : wedge_grid(scene).cells();
 }

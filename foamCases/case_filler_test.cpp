@@ -119,7 +119,7 @@ TEST(CaseFiller, AGateIsAPlateBeforeTheOpeningOfAnLBoxThatHasOne) {
   EXPECT_THAT(gate_baffles(scene), HasSubstr("origin      (0.10001 -0.001 -0.001);"));
   auto open = scene.l_box();
   open.gate_lift_velocity.reset();
-  scene.geometry.shape = open;
+  scene.geometry.apparatus = open;
   EXPECT_THAT(scene_parameters(scene, true), ::testing::Not(HasSubstr("liftedGate")));
   EXPECT_EQ(gate_baffles(scene), "");
   // A case that was filled with a gate is filled again without.

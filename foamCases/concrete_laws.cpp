@@ -160,7 +160,7 @@ std::string after_every_step(const Scene& scene, bool plug_in) {
   if (plug_in && is_vessel(scene))
     text += function_object(
         "shearRate", fmt::format("        strainRate      {};\n", scenes::to_string(scene.foam.strain_rate)));
-  if (plug_in && scene.kind == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
+  if (plug_in && scene.kind() == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
     text += function_object("airRises",
                             fmt::format("        time            {};  // s\n", *scene.foam.air_rise_time));
   if (const auto gate = gate_of(scene)) text += lifted_gate(*gate);
@@ -170,7 +170,7 @@ std::string after_every_step(const Scene& scene, bool plug_in) {
 
 /// Correctors of the pressure. Concrete that slows under a surface chatters with fewer, whatever its step.
 int pressure_correctors(const Scene& scene, bool plug_in) {
-  const bool slows = scene.kind != scenes::Kind::duct && scene.kind != scenes::Kind::dam_break;
+  const bool slows = scene.kind() != scenes::Kind::duct && scene.kind() != scenes::Kind::dam_break;
   return plug_in && slows ? 12 : 6;
 }
 

@@ -21,7 +21,7 @@ double energy_of_the_fall(const scenes::Scene& scene, double volume) {
 }  // namespace
 
 Conservation::Conservation(const scenes::Scene& scene, double volume)
-    : may_leave_(scene.kind == scenes::Kind::v_funnel),
+    : may_leave_(scene.kind() == scenes::Kind::v_funnel),
       scene_volume_(volume),
       energy_bound_(energy_of_the_fall(scene, volume)) {}
 

@@ -74,7 +74,7 @@ struct Programs {
 Programs needed_programs(const scenes::Scene& scene, int ranks) {
   Programs programs;
   programs.prepare.push_back({openfoam_program("blockMesh"), {}});
-  if (scene.kind == scenes::Kind::slump && scene.geometry.dimension != scenes::Dimension::quarter) {
+  if (scene.kind() == scenes::Kind::slump && scene.geometry.dimension != scenes::Dimension::quarter) {
     programs.prepare.push_back({openfoam_program("setAlphaField"), {}});
     programs.prepare.push_back({openfoam_program("setFields"), {}});
   }
@@ -95,13 +95,13 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
 std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
                                       runs::RunWriter& writer, bool plug_in) {
   if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
-  if (scene.kind == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
+  if (scene.kind() == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
   return std::make_unique<SlumpSampler>(scene, fields, writer, plug_in);
 }
 
 /// Which of the scene's walls the case does not have, in words; empty where it has them all.
 std::string walls_differ(const scenes::Scene& scene) {
-  if (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity)
+  if (scene.kind() == scenes::Kind::slump && scene.slump().mould_lift_velocity)
     return "no mould: the cone is released at once";
   return "";
 }

@@ -342,7 +342,7 @@ TEST_F(PlugIn, AnLBoxsGateHoldsUntilItIsLifted) {
                            scenes::Model::papanastasiou});
     auto box = scene.l_box();
     box.gate_lift_velocity = velocity;
-    scene.geometry.shape = box;
+    scene.geometry.apparatus = box;
     const auto result = run(scene);
     EXPECT_EQ(outcome_.status, runs::Status::end_time);
     EXPECT_LT(std::abs(result.info["volume_error"].get<double>()), 1e-7);

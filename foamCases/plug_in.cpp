@@ -19,7 +19,7 @@ namespace {
 constexpr const char* library = "libflowrestRheology.so";
 
 std::string law(const Scene& scene) {
-  return fmt::format("kind {}, model {}{}{}", scenes::to_string(scene.kind),
+  return fmt::format("kind {}, model {}{}{}", scenes::to_string(scene.kind()),
                      scenes::to_string(scene.material.model), scene.thixotropy ? " with [thixotropy]" : "",
                      scene.base.law == scenes::Wall::friction ? " on walls with friction" : "");
 }
@@ -43,7 +43,7 @@ std::string openfoam_of_plug_in() { return FLOWREST_OPENFOAM_VERSION; }
 Scene settled(Scene scene, bool plug_in) {
   constexpr int rows = 4;
   constexpr double rise_time = 0.1;  // s
-  if (scene.kind != scenes::Kind::slump) return scene;
+  if (scene.kind() != scenes::Kind::slump) return scene;
   if (scene.foam.base_rows == 0) scene.foam.base_rows = plug_in ? rows : 1;
   if (!scene.foam.air_rise_time) scene.foam.air_rise_time = plug_in ? rise_time : 0.0;
   return scene;
@@ -55,7 +55,7 @@ bool carries_flocculation(const Scene& scene) {
 
 bool needs_plug_in(const Scene& scene) {
   // What is mended where cells lean is mended by the plug-in.
-  const bool leans = scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel;
+  const bool leans = scene.kind() == scenes::Kind::l_box || scene.kind() == scenes::Kind::v_funnel;
   return leans || scene.base.law == scenes::Wall::friction || laws::can_rest(scene.material.model) ||
          carries_flocculation(scene);
 }
@@ -69,7 +69,7 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
         scene.path.string(), law(scene)));
   }
   // Without a surface one viscosity is one viscosity.
-  if (!laws::has_yield_stress(scene.material.model) && scene.kind == scenes::Kind::duct && !needed)
+  if (!laws::has_yield_stress(scene.material.model) && scene.kind() == scenes::Kind::duct && !needed)
     return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)

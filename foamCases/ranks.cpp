@@ -34,10 +34,10 @@ std::string sensible(const Divisible& mesh, int cores) {
 }  // namespace
 
 Divisible divisible(const scenes::Scene& scene) {
-  if (scene.kind == scenes::Kind::duct) return {duct_cells(scene), 1};
+  if (scene.kind() == scenes::Kind::duct) return {duct_cells(scene), 1};
   if (is_vessel(scene)) {
     // As the cases' decomposeParDict have it: a funnel's slices lie one over another.
-    const std::size_t axis = scene.kind == scenes::Kind::v_funnel ? 2 : 0;
+    const std::size_t axis = scene.kind() == scenes::Kind::v_funnel ? 2 : 0;
     return {mesh_cells(scene), slices_of(vessel_mesh(scene), axis)};
   }
   const bool quarter = scene.geometry.dimension == scenes::Dimension::quarter;
@@ -53,7 +53,7 @@ int sensible_ranks(const Divisible& mesh, int cores) {
 
 void check_ranks(const scenes::Scene& scene, int ranks, int cores) {
   if (ranks <= 1) return;
-  if (scene.kind == scenes::Kind::duct)
+  if (scene.kind() == scenes::Kind::duct)
     throw scenes::SceneError(
         fmt::format("{}: --ranks {}: a duct is one column of cells; allowed: 1", scene.path.string(), ranks));
   const Divisible mesh = divisible(scene);

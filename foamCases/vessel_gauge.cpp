@@ -58,7 +58,7 @@ VesselGauge::VesselGauge(const scenes::Scene& scene)
     : scene_(scene), cells_(mesh_cells(vessel_mesh(scene))), factor_(whole_over_mesh(scene)) {}
 
 bool VesselGauge::floor_holds() const {
-  return scene_.base.law != scenes::Wall::slip && scene_.kind != scenes::Kind::v_funnel;
+  return scene_.base.law != scenes::Wall::slip && scene_.kind() != scenes::Kind::v_funnel;
 }
 
 VesselGauges VesselGauge::measure(const VesselFields& fields) const {
@@ -81,7 +81,7 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
   }
   gauges.shear_rate_p99 = percentile_99(std::move(inside));
   gauges.base_shear_rate_p99 = held ? percentile_99(std::move(at_floor)) : 0.0;
-  if (scene_.kind == scenes::Kind::v_funnel) {
+  if (scene_.kind() == scenes::Kind::v_funnel) {
     measure_funnel(fields, gauges);
   } else {
     measure_channel(fields, gauges);
@@ -90,7 +90,7 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
 }
 
 void VesselGauge::measure_channel(const VesselFields& fields, VesselGauges& gauges) const {
-  const bool box = scene_.kind == scenes::Kind::l_box;
+  const bool box = scene_.kind() == scenes::Kind::l_box;
   const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
   const double begin = box ? scene_.l_box().reservoir_length : 0.0;
   const double width = box ? scene_.l_box().width : 1.0;  // of a plane a metre

@@ -33,7 +33,7 @@ constexpr int air_rows = 2, outlet_rows = 4;
 void check_dimension(const Scene& scene, Dimension allowed) {
   if (scene.geometry.dimension != allowed)
     refuse(scene, fmt::format("geometry.dimension {}: OpenFOAM's case of a {} is {}; allowed: {}",
-                              scenes::to_string(scene.geometry.dimension), scenes::to_string(scene.kind),
+                              scenes::to_string(scene.geometry.dimension), scenes::to_string(scene.kind()),
                               allowed == Dimension::plane  ? "a plane one"
                               : allowed == Dimension::half ? "one half, cut along its middle"
                                                            : "one quarter",
@@ -175,7 +175,7 @@ class LBox {
     return bar && room;
   }
 
-  const scenes::LBoxGeometry& g_;
+  const scenes::LBox& g_;
   std::vector<Bar> bars_;
   double lip_back_ = 0.0;
   Line x_, y_, z_;
@@ -286,14 +286,14 @@ double count_cells(const BlockLattice& lattice) {
 }  // namespace
 
 bool is_vessel(const Scene& scene) {
-  return scene.kind == Kind::l_box || scene.kind == Kind::v_funnel || scene.kind == Kind::dam_break;
+  return scene.kind() == Kind::l_box || scene.kind() == Kind::v_funnel || scene.kind() == Kind::dam_break;
 }
 
 BlockLattice vessel_mesh(const Scene& scene) {
   if (!(scene.foam.cell > 0.0))
     refuse(scene, "foam.cell is missing; `flowrest foam` needs a cell size above 0 m");
-  const auto lattice = scene.kind == Kind::l_box      ? l_box(scene)
-                       : scene.kind == Kind::v_funnel ? v_funnel(scene)
+  const auto lattice = scene.kind() == Kind::l_box      ? l_box(scene)
+                       : scene.kind() == Kind::v_funnel ? v_funnel(scene)
                                                       : dam_break(scene);
   if (const double cells = count_cells(lattice); cells > most_cells)
     refuse(scene, fmt::format("foam.cell = {:g} m gives {:.3g} cells; at most {:.0e} are allowed",
@@ -302,7 +302,7 @@ BlockLattice vessel_mesh(const Scene& scene) {
 }
 
 std::array<Point, 2> initial_box(const Scene& scene) {
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case Kind::l_box:
       return {Point{-far, -far, -far},
               Point{scene.l_box().reservoir_length, far, scene.l_box().reservoir_height}};
@@ -315,7 +315,7 @@ std::array<Point, 2> initial_box(const Scene& scene) {
 }
 
 std::optional<Gate> gate_of(const Scene& scene) {
-  if (scene.kind != Kind::l_box || !scene.l_box().gate_lift_velocity) return std::nullopt;
+  if (scene.kind() != Kind::l_box || !scene.l_box().gate_lift_velocity) return std::nullopt;
   const auto& g = scene.l_box();
   return Gate{{g.reservoir_length, 0.0, 0.0},
               {g.reservoir_length, 0.5 * g.width, g.channel_height},
@@ -323,7 +323,7 @@ std::optional<Gate> gate_of(const Scene& scene) {
 }
 
 double whole_over_mesh(const Scene& scene) {
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case Kind::l_box:
       return 2.0;
     case Kind::v_funnel:
@@ -334,7 +334,7 @@ double whole_over_mesh(const Scene& scene) {
 }
 
 double initial_volume(const Scene& scene) {
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case Kind::l_box:
       return scene.l_box().reservoir_length * scene.l_box().width * scene.l_box().reservoir_height;
     case Kind::v_funnel:

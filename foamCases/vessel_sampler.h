@@ -21,7 +21,7 @@ class VesselSampler : public Sampler {
   nlohmann::ordered_json summary() const override;
 
  private:
-  bool is_funnel() const { return scene().kind == scenes::Kind::v_funnel; }
+  bool is_funnel() const { return scene().kind() == scenes::Kind::v_funnel; }
   void sample(double time, const ReadField&) override;
   void write_history(double time);
   double discharged() const;  ///< share of the concrete

@@ -24,7 +24,7 @@ Gauges gauges_of(const Run& run) {
 Json gauge_definitions(const scenes::Scene& scene) {
   const Gauges& gauges = scene.gauges;
   Json columns = Json::object();
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case scenes::Kind::slump:
       columns["spread_mm"] = {{"depth_m", gauges.spread_depth}};
       columns["spread_1p5_mm"] = {{"depth_m", 0.5 * gauges.spread_depth}};

@@ -162,11 +162,11 @@ RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const C
   std::string problem = "it is missing";
   auto info = read_info(path, problem);
   if (!info) throw RunError(fmt::format("{}: cannot be resumed: {}", path.string(), problem));
-  RunWriter writer(std::move(lock), scene.kind, std::move(*info));
+  RunWriter writer(std::move(lock), scene.kind(), std::move(*info));
   if (const std::string there = header_of_csv(directory / "profiles.csv");
       !there.empty() && there != writer.profile_header_)
     throw RunError(fmt::format("{}:1: the columns are '{}', a {} writes '{}'",
-                               (directory / "profiles.csv").string(), there, scenes::to_string(scene.kind),
+                               (directory / "profiles.csv").string(), there, scenes::to_string(scene.kind()),
                                writer.profile_header_));
   writer.info_["status"] = to_string(Status::running);
   writer.info_["reason"] = "";

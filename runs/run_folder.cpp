@@ -82,7 +82,7 @@ Json first_info(const scenes::Scene& scene, const std::string& solver, const Jso
                {"format_version", run_format_version},
                {"title", scene.title},
                {"scene_name", scene.name},
-               {"kind", scenes::to_string(scene.kind)},
+               {"kind", scenes::to_string(scene.kind())},
                {"solver", solver},
                {"model", scenes::to_string(scene.material.model)},
                {"status", to_string(Status::running)},
@@ -186,7 +186,7 @@ RunFolder::RunFolder(const fs::path& directory, const scenes::Scene& scene, cons
 
 RunFolder::RunFolder(FolderLock lock, const scenes::Scene& scene, const std::string& solver, Replace replace,
                      Json beside)
-    : lock_(std::move(lock)), kind_(scene.kind), info_(first_info(scene, solver, beside)) {
+    : lock_(std::move(lock)), kind_(scene.kind()), info_(first_info(scene, solver, beside)) {
   const std::string folder = lock_.folder().string();
   Found found = find_in(lock_.folder(), info_, beside);
   if (found.standing == Standing::foreign)

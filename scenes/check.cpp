@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/case.h"
 #include "scenes/names.h"
 #include "scenes/step_limits.h"
 #include "scenes/text.h"
@@ -15,7 +16,6 @@ namespace {
 
 /// Past these a run would fit no machine, or no lifetime.
 constexpr double most_particles = 2e9;
-constexpr double most_cells = 2e9;
 constexpr double most_particle_steps = 1e18;
 constexpr double most_outputs = 1e8;
 
@@ -23,22 +23,6 @@ constexpr double most_outputs = 1e8;
 /// lands soundly, pressed to 0.88 of its volume; from 1.1 on it is crushed and rebounds with energy that it
 /// never had, however short the step (mpm/README.md, Limits).
 constexpr double largest_fall_over_sound = 1.0;
-
-/// What every rule needs at hand.
-struct Case {
-  const Given& given;
-  const Draft& draft;
-  Faults& faults;
-
-  const Scene& scene() const { return draft.scene; }
-  bool usable(std::initializer_list<std::string> paths) const {
-    return std::none_of(paths.begin(), paths.end(),
-                        [&](const std::string& path) { return draft.unusable.contains(path); });
-  }
-  void fault(const std::string& path, const std::string& what) const {
-    faults.add(given.place_of(path), what);
-  }
-};
 
 /// Every model the scene may be run with.
 std::vector<Model> models_in_use(const Scene& scene) {
@@ -51,135 +35,16 @@ std::vector<Model> models_in_use(const Scene& scene) {
   return models;
 }
 
-std::vector<Dimension> dimensions_of(Kind kind) {
-  switch (kind) {
-    case Kind::slump:
-      return {Dimension::axisymmetric, Dimension::plane, Dimension::quarter, Dimension::full};
-    case Kind::duct:
-      return {Dimension::plane};
-    case Kind::l_box:
-      return {Dimension::plane, Dimension::half, Dimension::full};
-    case Kind::v_funnel:
-      return {Dimension::plane, Dimension::quarter, Dimension::full};
-    case Kind::dam_break:
-      return {Dimension::plane, Dimension::full};
-  }
-  return {};
-}
-
 void check_dimension(const Case& c) {
   const Dimension dimension = c.scene().geometry.dimension;
   if (!c.usable({"geometry.dimension"})) return;
-  const std::vector<Dimension> allowed = dimensions_of(c.scene().kind);
+  const Apparatus& apparatus = c.scene().geometry.apparatus;
+  const std::vector<Dimension> allowed = std::visit([](const auto& a) { return a.dimensions(); }, apparatus);
   if (std::find(allowed.begin(), allowed.end(), dimension) != allowed.end()) return;
   std::vector<std::string> names;
   for (const Dimension one : allowed) names.push_back(to_string(one));
   c.fault("geometry.dimension", fmt::format("geometry.dimension is {}, which does not suit a {}; allowed: {}",
-                                            to_string(dimension), to_string(c.scene().kind), joined(names)));
-}
-
-void check_cone_fits(const Case& c) {
-  const SlumpGeometry& shape = c.scene().slump();
-  const double radius = std::max(shape.cone_radius_top, shape.cone_radius_bottom);
-  if (c.usable({"geometry.cone_radius_top", "geometry.cone_radius_bottom", "geometry.domain_radius"}) &&
-      radius >= shape.domain_radius) {
-    c.fault("geometry.domain_radius",
-            fmt::format(
-                "the cone does not fit the domain: its radius is {:g} m, geometry.domain_radius is {:g} m; "
-                "allowed: a domain wider than the cone",
-                radius, shape.domain_radius));
-  }
-  if (c.usable({"geometry.cone_height", "geometry.domain_height"}) &&
-      shape.cone_height > shape.domain_height) {
-    c.fault("geometry.domain_height",
-            fmt::format(
-                "the cone does not fit the domain: its height is {:g} m, geometry.domain_height is {:g} m; "
-                "allowed: a domain at least as high as the cone",
-                shape.cone_height, shape.domain_height));
-  }
-}
-
-/// A cell that holds the whole body resolves nothing.
-void check_cell(const Case& c, const std::string& path, double cell, const std::string& body,
-                double smallest) {
-  if (cell > smallest) {
-    c.fault(path, fmt::format("{} is {:g} m, larger than the {} ({:g} m); allowed: at most {:g}", path, cell,
-                              body, smallest, smallest));
-  }
-}
-
-void check_slump_cells(const Case& c) {
-  if (!c.usable({"geometry.cone_height", "geometry.cone_radius_bottom", "mpm.cell", "foam.cell"})) return;
-  const SlumpGeometry& shape = c.scene().slump();
-  const double smallest = std::min(shape.cone_height, shape.cone_radius_bottom);
-  check_cell(c, "mpm.cell", c.scene().mpm.cell, "cone", smallest);
-  if (c.given.gives("foam.cell")) check_cell(c, "foam.cell", c.scene().foam.cell, "cone", smallest);
-}
-
-/// The plates lie on grid lines, where a wall is exact.
-void check_duct_cells(const Case& c) {
-  if (!c.usable({"geometry.height", "mpm.cell"})) return;
-  if (c.scene().base.law == Wall::friction)
-    c.fault("walls.base", "walls.base has friction, which does not suit a duct; allowed: no-slip, slip");
-  const double height = c.scene().duct().height;
-  const double cells = height / c.scene().mpm.cell;
-  constexpr double tolerance = 1e-6;
-  check_cell(c, "mpm.cell", c.scene().mpm.cell, "duct", height);
-  if (cells >= 1.0 && cells < most_cells && std::abs(cells - std::round(cells)) > tolerance * cells) {
-    c.fault("mpm.cell",
-            fmt::format(
-                "the duct is {:g} cells high; allowed: a whole number of cells, for example mpm.cell = {:g}",
-                cells, height / std::round(cells)));
-  }
-}
-
-void check_l_box(const Case& c) {
-  const LBoxGeometry& box = c.scene().l_box();
-  if (!c.usable({"geometry.reservoir_height", "geometry.channel_height", "geometry.width", "geometry.rebars",
-                 "geometry.rebar_diameter", "geometry.rebar_distance", "geometry.channel_length",
-                 "mpm.cell"}))
-    return;
-  if (box.channel_height >= box.reservoir_height)
-    c.fault(
-        "geometry.channel_height",
-        fmt::format("geometry.channel_height is {:g} m, the reservoir {:g} m high; allowed: less than the "
-                    "reservoir's height",
-                    box.channel_height, box.reservoir_height));
-  if (box.rebars * box.rebar_diameter >= box.width)
-    c.fault("geometry.rebars",
-            fmt::format("{} bars of {:g} m fill the width of {:g} m; allowed: bars that leave gaps",
-                        box.rebars, box.rebar_diameter, box.width));
-  if (box.rebars > 0 && box.rebar_distance + 0.5 * box.rebar_diameter >= box.channel_length)
-    c.fault(
-        "geometry.rebar_distance",
-        fmt::format("the bars at {:g} m do not stand in the channel of {:g} m; allowed: a shorter distance",
-                    box.rebar_distance, box.channel_length));
-  check_cell(c, "mpm.cell", c.scene().mpm.cell, "channel", std::min(box.channel_height, 0.5 * box.width));
-}
-
-void check_v_funnel(const Case& c) {
-  const VFunnelGeometry& funnel = c.scene().v_funnel();
-  if (!c.usable({"geometry.top_width", "geometry.outlet_width", "geometry.depth", "mpm.cell"})) return;
-  if (funnel.outlet_width > funnel.top_width)
-    c.fault("geometry.outlet_width",
-            fmt::format(
-                "geometry.outlet_width is {:g} m, wider than the top ({:g} m); allowed: at most the top's "
-                "width",
-                funnel.outlet_width, funnel.top_width));
-  check_cell(c, "mpm.cell", c.scene().mpm.cell, "half of the outlet",
-             0.5 * std::min(funnel.outlet_width, funnel.depth));
-}
-
-void check_dam_break(const Case& c) {
-  const DamBreakGeometry& dam = c.scene().dam_break();
-  if (!c.usable({"geometry.column_length", "geometry.column_height", "geometry.tank_length", "mpm.cell"}))
-    return;
-  if (dam.column_length > dam.tank_length)
-    c.fault("geometry.column_length",
-            fmt::format(
-                "the column of {:g} m does not fit the tank of {:g} m; allowed: at most the tank's length",
-                dam.column_length, dam.tank_length));
-  check_cell(c, "mpm.cell", c.scene().mpm.cell, "column", std::min(dam.column_length, dam.column_height));
+                                            to_string(dimension), name_of(apparatus), joined(names)));
 }
 
 /// Faults of what a model needs and the scene does not give.
@@ -225,23 +90,10 @@ void check_thixotropy(const Case& c) {
 }
 
 bool step_is_known(const Case& c) {
-  return c.usable({"geometry.cone_height",
-                   "geometry.cone_radius_top",
-                   "geometry.cone_radius_bottom",
-                   "geometry.height",
-                   "geometry.reservoir_length",
-                   "geometry.reservoir_height",
-                   "geometry.width",
-                   "geometry.top_width",
-                   "geometry.outlet_width",
-                   "geometry.depth",
-                   "geometry.taper_height",
-                   "geometry.neck_height",
-                   "geometry.fall_height",
-                   "geometry.column_length",
-                   "geometry.column_height",
-                   "geometry.dimension",
-                   "material.model",
+  for (const Key& key : keys())
+    if (key.section == "geometry" && key.suits(c.scene().geometry.apparatus) && !c.usable({key.path()}))
+      return false;
+  return c.usable({"material.model",
                    "material.density",
                    "forces.gravity",
                    "material.youngs_modulus",
@@ -350,17 +202,6 @@ void check_size(const Case& c) {
   }
 }
 
-void check_foam_size(const Case& c) {
-  if (!c.usable({"geometry.domain_radius", "geometry.domain_height", "foam.cell"})) return;
-  const SlumpGeometry& shape = c.scene().slump();
-  const double cell = c.scene().foam.cell;
-  const double cells = shape.domain_radius / cell * (shape.domain_height / cell);
-  if (cells <= most_cells) return;
-  c.fault(c.given.gives("foam.cell") ? "foam.cell" : "mpm.cell",
-          fmt::format("the OpenFOAM mesh would have {:.3g} cells of {:g} m; allowed: at most {:g}", cells,
-                      cell, most_cells));
-}
-
 /// What is deeper or longer than the body is read nowhere.
 void check_gauges(const Case& c) {
   const Scene& scene = c.scene();
@@ -372,14 +213,14 @@ void check_gauges(const Case& c) {
   };
   const Gauges& gauges = scene.gauges;
   const double height = scene.body_height();
-  if (scene.kind == Kind::slump)
+  if (scene.kind() == Kind::slump)
     check_length("gauges.spread_depth", gauges.spread_depth, "the cone's height", height,
                  {"geometry.cone_height"});
-  if (scene.kind == Kind::v_funnel)
+  if (scene.kind() == Kind::v_funnel)
     check_length("gauges.light_depth", gauges.light_depth, "the funnel's height", height,
                  {"geometry.taper_height", "geometry.neck_height"});
-  if (scene.kind == Kind::l_box || scene.kind == Kind::dam_break) {
-    const bool box = scene.kind == Kind::l_box;
+  if (scene.kind() == Kind::l_box || scene.kind() == Kind::dam_break) {
+    const bool box = scene.kind() == Kind::l_box;
     check_length("gauges.front_depth", gauges.front_depth,
                  box ? "the reservoir's height" : "the column's height", height,
                  {"geometry.reservoir_height", "geometry.column_height"});
@@ -408,15 +249,7 @@ void check_outputs(const Case& c) {
 void check(const Given& given, const Draft& draft, Faults& faults) {
   const Case c{given, draft, faults};
   check_dimension(c);
-  if (draft.scene.kind == Kind::slump) {
-    check_cone_fits(c);
-    check_slump_cells(c);
-    check_foam_size(c);
-  }
-  if (draft.scene.kind == Kind::duct) check_duct_cells(c);
-  if (draft.scene.kind == Kind::l_box) check_l_box(c);
-  if (draft.scene.kind == Kind::v_funnel) check_v_funnel(c);
-  if (draft.scene.kind == Kind::dam_break) check_dam_break(c);
+  std::visit([&](const auto& a) { a.check(c); }, draft.scene.geometry.apparatus);
   check_models(c);
   check_foam_runs(c);
   check_thixotropy(c);

@@ -33,11 +33,11 @@ constexpr double bytes_of_interfoam = 1e8;
 double mesh_cells(const Scene& scene) {
   const double cell = scene.foam.cell;
   const auto along = [cell](double length) { return std::max(1.0, std::round(length / cell)); };
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case Kind::duct:
       return std::round(scene.duct().height / cell);
     case Kind::slump: {
-      const SlumpGeometry& shape = scene.slump();
+      const Slump& shape = scene.slump();
       // The usual four rows in place of the lowest.
       const double rows =
           std::ceil(shape.domain_height / cell) + (scene.foam.base_rows == 0 ? 4 : scene.foam.base_rows) - 1;
@@ -45,7 +45,7 @@ double mesh_cells(const Scene& scene) {
       return rows * (scene.geometry.dimension == Dimension::quarter ? radius * radius : radius);
     }
     case Kind::l_box: {
-      const LBoxGeometry& box = scene.l_box();
+      const LBox& box = scene.l_box();
       const double bars = box.rebars > 0 ? 1.0 : 0.0;
       const double channel =
           (along(box.length()) + bars * cells_of_bars_along) * (along(box.channel_height) + 2.0);
@@ -53,12 +53,12 @@ double mesh_cells(const Scene& scene) {
       return (along(0.5 * box.width) + bars * cells_of_bars_across) * (channel + reservoir);
     }
     case Kind::v_funnel: {
-      const VFunnelGeometry& funnel = scene.v_funnel();
+      const VFunnel& funnel = scene.v_funnel();
       return along(0.5 * std::sqrt(funnel.outlet_width * funnel.top_width)) * along(0.5 * funnel.depth) *
              (along(funnel.height()) + 5.0);
     }
     case Kind::dam_break: {
-      const DamBreakGeometry& dam = scene.dam_break();
+      const DamBreak& dam = scene.dam_break();
       return along(dam.tank_length) * along(2.0 * dam.column_height);
     }
   }
@@ -82,9 +82,9 @@ double foam_steps(const Scene& scene) {
   const double unhurried = unhurried_foam_steps(scene);
   constexpr double between_bars = 0.15;
   double speed = std::sqrt(2.0 * scene.forces.gravity * scene.body_height());
-  if (scene.kind == Kind::l_box && laws::can_rest(scene.material.model))
+  if (scene.kind() == Kind::l_box && laws::can_rest(scene.material.model))
     speed *= between_bars;
-  else if (scene.kind != Kind::v_funnel)
+  else if (scene.kind() != Kind::v_funnel)
     return unhurried;
   return std::max(unhurried, scene.time.end * speed / (scene.foam.max_courant * smallest_foam_cell(scene)));
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "scenes/pieces.h"
 #include "scenes/settings.h"
 #include "scenes/text.h"
 
@@ -127,56 +128,6 @@ void hold_to_rules(const Scene& scene, std::vector<std::string>& notes) {
                                   explanation(rule, value, key->unit)));
     }
   }
-}
-
-/// What a yield stress holds, and the largest shear stress that can come over it, Pa.
-struct Load {
-  const char* what;     ///< "the cone"
-  const char* rule;     ///< how the stress follows
-  double stress = 0.0;  ///< Pa; a yield stress as large holds it for certain
-};
-
-/// A column whose weight rests on its foot yields where rho g h, pressing, brings sqrt(J2) = rho g h /
-/// sqrt(3) about.
-Load standing(const Scene& scene, const char* what) {
-  return {what, "rho g h / sqrt(3)",
-          scene.material.density * scene.forces.gravity * scene.body_height() / std::numbers::sqrt3};
-}
-
-/// Walls that hold the material carry the neck, with the head of the taper over it, as plates at the nearer
-/// pair's distance would; past others it must be squeezed through the taper by its weight.
-Load hanging(const Scene& scene) {
-  const VFunnelGeometry& funnel = scene.v_funnel();
-  const Load squeezed = standing(scene, "the material in the funnel");
-  if (scene.base.law != Wall::no_slip) return squeezed;
-  const bool plane = scene.geometry.dimension == Dimension::plane;
-  const double gap = plane ? funnel.outlet_width : std::min(funnel.outlet_width, funnel.depth);
-  const double force = scene.material.density * scene.forces.gravity * funnel.height() / funnel.neck_height;
-  const Load carried = {squeezed.what, "rho g (h / neck height) (outlet / 2)", 0.5 * gap * force};
-  return carried.stress < squeezed.stress ? carried : squeezed;
-}
-
-Load driven(const Scene& scene) {
-  double force = 0.0;
-  for (const auto& [time, value] : scene.forces.body_force) force = std::max(force, std::abs(value));
-  return {"the duct", "F h / 2", 0.5 * force * scene.duct().height};
-}
-
-/// What there is to be held; nothing where walls let it slide, whatever it yields at.
-std::optional<Load> load_of(const Scene& scene) {
-  switch (scene.kind) {
-    case Kind::slump:
-      return standing(scene, "the cone");
-    case Kind::l_box:
-      return standing(scene, "the reservoir");
-    case Kind::dam_break:
-      return standing(scene, "the column");
-    case Kind::duct:
-      return scene.base.law == Wall::no_slip ? std::optional(driven(scene)) : std::nullopt;
-    case Kind::v_funnel:
-      return hanging(scene);
-  }
-  return std::nullopt;
 }
 
 /// Pa, at the start.

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double standard_gravity = 9.81;  // m/s2
-
 /// @throws SceneError where there is no such file or it is no scene.
 std::string read_text(const fs::path& path) {
   std::error_code error;
@@ -167,20 +165,19 @@ std::string missing(const Key& key) {
   return fmt::format("{} is missing; needed: {} ({}{})", key.path(), key.meaning, key.takes, unit);
 }
 
-std::string misplaced(const Key& key, Kind kind) {
-  return fmt::format("{} does not belong to a {}; allowed in [{}]: {}", key.path(), to_string(kind),
-                     key.section, joined(key_names(key.section, kind)));
+std::string misplaced(const Key& key, const Apparatus& apparatus) {
+  return fmt::format("{} does not belong to a {}; allowed in [{}]: {}", key.path(), name_of(apparatus),
+                     key.section, joined(key_names(key.section, &apparatus)));
 }
 
 /// Stores what is given for a key, or says what is wrong with it.
 void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) {
-  const Kind kind = draft.scene.kind;
   const auto value = given.values.find(key.path());
   const bool is_given = value != given.values.end();
-  const bool suits = key.suits(kind);
+  const bool suits = key.suits(draft.scene.geometry.apparatus);
   Complaint wrong{"", given.place_of(key.path())};
   if (is_given && !suits) {
-    wrong.what = misplaced(key, kind);
+    wrong.what = misplaced(key, draft.scene.geometry.apparatus);
   } else if (is_given) {
     wrong = key.read(value->second, draft);
     if (!wrong.what.empty()) wrong.what = fmt::format("{} {}", key.path(), wrong.what);
@@ -192,28 +189,17 @@ void read_key(const Key& key, const Given& given, Draft& draft, Faults& faults) 
   draft.unusable.insert(key.path());
 }
 
-/// Sets what differs between kinds before anything is read, and makes room for what only some scenes have.
-void prepare(const Given& given, Draft& draft) {
-  const Kind kind = draft.scene.kind;
-  draft.take_shape_of(kind);
-  if (kind != Kind::duct) draft.scene.forces.gravity = standard_gravity;
-  // A duct starts from rest, a funnel is to run empty, and water does not stop.
-  draft.scene.time.stop_at_rest = kind == Kind::slump || kind == Kind::l_box;
-  if (given.sections.contains("thixotropy")) draft.scene.thixotropy.emplace();
-}
-
 /// @throws SceneError
 Scene build(const Given& given, Faults& faults) {
   Draft draft;
+  if (given.sections.contains("thixotropy")) draft.scene.thixotropy.emplace();
   read_key(*find_key("kind"), given, draft, faults);
-  const bool kind_is_known = draft.unusable.empty();
-  prepare(given, draft);
+  const bool apparatus_is_known = draft.unusable.empty();
   for (const Key& key : keys()) {
-    // Without a kind, what depends on it can be neither expected nor refused.
-    if (key.path() != "kind" && (kind_is_known || key.only_kinds.empty()))
-      read_key(key, given, draft, faults);
+    // Without an apparatus, what depends on it can be neither expected nor refused.
+    if (key.path() != "kind" && (apparatus_is_known || key.only.empty())) read_key(key, given, draft, faults);
   }
-  if (kind_is_known) {
+  if (apparatus_is_known) {
     resolve(given, draft, faults);
     check(given, draft, faults);
   }

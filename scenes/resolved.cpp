@@ -26,7 +26,7 @@ std::vector<Setting> settings_of(const Scene& scene) {
   draft.scene = scene;
   std::vector<Setting> settings;
   for (const Key& key : keys()) {
-    if (!key.suits(scene.kind)) continue;
+    if (!key.suits(scene.geometry.apparatus)) continue;
     if (key.section == "thixotropy" && !scene.thixotropy) continue;
     Json value = key.write(draft);
     if (!value.is_null()) settings.push_back({&key, std::move(value)});

@@ -2,24 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace flowrest::scenes {
-
-double SlumpGeometry::volume() const {
-  return std::numbers::pi / 3.0 * cone_height *
-         (cone_radius_top * cone_radius_top + cone_radius_top * cone_radius_bottom +
-          cone_radius_bottom * cone_radius_bottom);
-}
-
-double VFunnelGeometry::width_at(double height) const {
-  const double share = std::clamp((height - neck_height) / taper_height, 0.0, 1.0);
-  return outlet_width + share * (top_width - outlet_width);
-}
-
-double VFunnelGeometry::volume() const {
-  return depth * (neck_height * outlet_width + taper_height * 0.5 * (outlet_width + top_width));
-}
 
 double Gauges::edge_depth(Kind kind) const {
   switch (kind) {
@@ -39,13 +23,14 @@ double Gauges::edge_depth(Kind kind) const {
 Gauges gauges_of_body(const Scene& scene) {
   constexpr double standard_gravity = 9.81;  // m/s2
   Gauges gauges;
-  if (scene.kind == Kind::duct) return gauges;
+  const double standard =
+      std::visit([](const auto& a) { return a.standard_height; }, scene.geometry.apparatus);
+  if (standard == 0.0) return gauges;
   const double height = scene.body_height();
-  const bool slump = scene.kind == Kind::slump;
-  const double size = height / (slump ? 0.3 : 0.6);  // over the standard apparatus
+  const double size = height / standard;
   const double time =
       scene.forces.gravity > 0.0 ? std::sqrt(size * (standard_gravity / scene.forces.gravity)) : 1.0;
-  if (slump) {
+  if (scene.main_gauge() == MainGauge::spread) {
     gauges.spread_depth = height / 100.0;
   } else {
     gauges.front_depth = gauges.light_depth = height / 200.0;
@@ -60,20 +45,12 @@ Gauges gauges_of_body(const Scene& scene) {
   return gauges;
 }
 
+MainGauge Scene::main_gauge() const {
+  return std::visit([](const auto& a) { return a.main_gauge; }, geometry.apparatus);
+}
+
 double Scene::body_height() const {
-  switch (kind) {
-    case Kind::slump:
-      return slump().cone_height;
-    case Kind::duct:
-      return duct().height;
-    case Kind::l_box:
-      return l_box().reservoir_height;
-    case Kind::v_funnel:
-      return v_funnel().height();
-    case Kind::dam_break:
-      return dam_break().column_height;
-  }
-  return 0.0;
+  return std::visit([](const auto& a) { return a.body_height(); }, geometry.apparatus);
 }
 
 double Material::bulk_modulus() const { return youngs_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio)); }

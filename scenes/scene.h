@@ -7,116 +7,21 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "laws/law.h"
+#include "scenes/apparatus/apparatus.h"
+#include "scenes/choices.h"
 
 /// The scene: what is simulated, read from TOML, checked and resolved once for every solver, in SI units.
 namespace flowrest::scenes {
 
+/// The place of an apparatus in the list, by name.
 enum class Kind { slump, duct, l_box, v_funnel, dam_break };
-/// What is computed of a body: `half` and `quarter` are cut along its planes of symmetry.
-enum class Dimension { axisymmetric, plane, half, quarter, full };
-using Model = laws::Law;
-enum class Scheme { quadratic_apic, linear_flip, paper };
-enum class Precision { double_precision, single_precision };
-enum class Seeding { lattice, jittered, gmsh };
-/// How a fluid's stress is integrated in MPM: pointwise implicit (no viscous limit) or explicit (enforced).
-enum class FluidUpdate { implicit_update, explicit_update };
-/// How the volumetric part of the strain, and the pressure, are averaged.
-enum class BBar { smooth, cell_average };
-/// How a wall holds the material; only `no_slip` and `slip` are names, friction is given by its coefficient.
-enum class Wall { no_slip, slip, friction };
-/// Whose laws an OpenFOAM run takes: flowrest's rheology plug-in, OpenFOAM's own, or the former where it is
-/// built.
-enum class FoamLaws { best, plug_in, built_in };
-/// How the stresses of concrete and air make that of a cell that holds both (plug-in only).
-enum class FoamMixing { arithmetic, harmonic, mass_weighted, saturating };
-/// Whose shear rate the law is given in such a cell (plug-in only).
-enum class FoamStrainRate { mixture, concrete };
-/// How much of a wall holds the concrete of a cell that it does not fill (plug-in only).
-enum class FoamWetting { fraction, geometric };
-
-/// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Kind);
-std::string to_string(Dimension);
-std::string to_string(Model);
-std::string to_string(Scheme);
-std::string to_string(Precision);
-std::string to_string(Seeding);
-std::string to_string(FluidUpdate);
-std::string to_string(BBar);
-std::string to_string(Wall);
-std::string to_string(FoamLaws);
-std::string to_string(FoamMixing);
-std::string to_string(FoamStrainRate);
-std::string to_string(FoamWetting);
-
-/// A cone of material released on a plate; the axis of symmetry is vertical.
-struct SlumpGeometry {
-  double cone_height = 0.0;         ///< m
-  double cone_radius_top = 0.0;     ///< m
-  double cone_radius_bottom = 0.0;  ///< m
-  double domain_radius = 0.0;       ///< m, bounds the OpenFOAM mesh; material that reaches it ends a run
-  double domain_height = 0.0;       ///< m
-  /// m/s, at which the mould is lifted; without one the cone is released at once.
-  std::optional<double> mould_lift_velocity;
-  /// Volume of the cone (a frustum), m3.
-  double volume() const;
-  bool operator==(const SlumpGeometry&) const = default;
-};
-
-/// A layer between two parallel plates, periodic along x and driven along x.
-struct DuctGeometry {
-  double height = 0.0;  ///< m, between the plates
-  bool operator==(const DuctGeometry&) const = default;
-};
-
-/// EN 12350-10: a reservoir whose gate opens on a channel behind upright bars (Yu et al. 2026, Fig. 18). x
-/// runs along the channel from the reservoir's back wall.
-struct LBoxGeometry {
-  double reservoir_length = 0.1;  ///< m, along the channel
-  double reservoir_height = 0.6;  ///< m, filled to the brim
-  double width = 0.2;             ///< m, across
-  double channel_length = 0.6;    ///< m, from the reservoir to the end wall
-  double channel_height = 0.15;   ///< m, of the opening under the reservoir's front wall
-  int rebars = 3;                 ///< upright, evenly across the width
-  double rebar_diameter = 0.012;  ///< m
-  double rebar_distance = 0.006;  ///< m, of the bars' axes from the reservoir
-  /// m/s, at which the gate is lifted; without one it is gone at once.
-  std::optional<double> gate_lift_velocity;
-  double length() const { return reservoir_length + channel_length; }
-  bool operator==(const LBoxGeometry&) const = default;
-};
-
-/// EN 12350-9: a funnel between two upright plates, over an outlet that opens at once (Yu et al. 2026, Fig.
-/// 24). x runs across its slopes, heights from the outlet.
-struct VFunnelGeometry {
-  double top_width = 0.515;     ///< m
-  double outlet_width = 0.065;  ///< m
-  double depth = 0.075;         ///< m, between the plates
-  double taper_height = 0.45;   ///< m
-  double neck_height = 0.15;    ///< m
-  double fall_height = 0.25;    ///< m, from the outlet to the floor that catches the material
-  double height() const { return taper_height + neck_height; }
-  double width_at(double height) const;  ///< m, between the slopes
-  double volume() const;                 ///< m3
-  bool operator==(const VFunnelGeometry&) const = default;
-};
-
-/// A column of fluid in the corner of a tank, held by nothing from the start.
-struct DamBreakGeometry {
-  double column_length = 0.6;  ///< m
-  double column_height = 0.6;  ///< m
-  double width = 0.15;         ///< m, of column and tank; of no consequence in a plane
-  double tank_length = 1.61;   ///< m
-  bool operator==(const DamBreakGeometry&) const = default;
-};
 
 struct Geometry {
   Dimension dimension = Dimension::axisymmetric;
-  std::variant<SlumpGeometry, DuctGeometry, LBoxGeometry, VFunnelGeometry, DamBreakGeometry> shape;
+  Apparatus apparatus;
   bool operator==(const Geometry&) const = default;
 };
 
@@ -283,7 +188,6 @@ struct Scene {
   std::string source;          ///< the file's text, as read
   Request request;
   std::string title;
-  Kind kind = Kind::slump;
   Runs runs;
   Geometry geometry;
   Material material;
@@ -297,11 +201,13 @@ struct Scene {
   Mpm mpm;
   Foam foam;
 
-  const SlumpGeometry& slump() const { return std::get<SlumpGeometry>(geometry.shape); }
-  const DuctGeometry& duct() const { return std::get<DuctGeometry>(geometry.shape); }
-  const LBoxGeometry& l_box() const { return std::get<LBoxGeometry>(geometry.shape); }
-  const VFunnelGeometry& v_funnel() const { return std::get<VFunnelGeometry>(geometry.shape); }
-  const DamBreakGeometry& dam_break() const { return std::get<DamBreakGeometry>(geometry.shape); }
+  const Slump& slump() const { return std::get<Slump>(geometry.apparatus); }
+  const Duct& duct() const { return std::get<Duct>(geometry.apparatus); }
+  const LBox& l_box() const { return std::get<LBox>(geometry.apparatus); }
+  const VFunnel& v_funnel() const { return std::get<VFunnel>(geometry.apparatus); }
+  const DamBreak& dam_break() const { return std::get<DamBreak>(geometry.apparatus); }
+  Kind kind() const { return static_cast<Kind>(geometry.apparatus.index()); }
+  MainGauge main_gauge() const;
   /// Height of the material at the start, m.
   double body_height() const;
   /// Spatial dimension of the computation: 2 for axisymmetric and plane, 3 for the others.

@@ -18,7 +18,6 @@ using testing::IsEmpty;
 /// Every resolved setting is the same.
 void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.title, b.title);
-  EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.runs, b.runs);
   EXPECT_EQ(a.geometry, b.geometry);
   EXPECT_EQ(a.material, b.material);
@@ -56,7 +55,7 @@ TEST(Scene, ReadsWhatIsGiven) {
   EXPECT_EQ(scene.name, "slump");
   EXPECT_EQ(scene.path, "some/folder/slump.toml");
   EXPECT_EQ(scene.source, slump_text);
-  EXPECT_EQ(scene.kind, Kind::slump);
+  EXPECT_EQ(scene.kind(), Kind::slump);
   EXPECT_THAT(scene.runs.mpm, ElementsAre(Model::elasto_viscoplastic));
   EXPECT_THAT(scene.runs.foam, ElementsAre(Model::papanastasiou));
   EXPECT_TRUE(scene.runs.exact);
@@ -461,7 +460,7 @@ TEST(Material, ModuliFollowFromYoungsModulus) {
   EXPECT_NEAR(material.longitudinal_speed(), std::sqrt((1e5 / 1.2 + 4.0 / 3.0 * 1e5 / 2.6) / 2300.0), 1e-12);
 }
 
-TEST(SlumpGeometry, VolumeIsThatOfAFrustum) {
+TEST(Slump, VolumeIsThatOfAFrustum) {
   EXPECT_NEAR(parse_scene(slump_text, "s.toml").slump().volume(), 5.49779e-3, 1e-8);
 }
 

@@ -1,10 +1,28 @@
 #include "scenes/schema.h"
 
+#include <fmt/format.h>
+
+#include <type_traits>
+
 #include "scenes/key_types.h"
 
 namespace flowrest::scenes {
 
 namespace {
+
+constexpr double standard_gravity = 9.81;  // m/s2
+
+/// Places in the list of the apparatus of which something is so.
+template <class IsSo>
+std::vector<std::size_t> places_of(IsSo is_so) {
+  std::vector<std::size_t> places;
+  std::size_t place = 0;
+  for_each_apparatus([&](const auto& a) {
+    if (is_so(a)) places.push_back(place);
+    ++place;
+  });
+  return places;
+}
 
 /// Where a setting is kept, as a function of the draft.
 #define AT(setting)             \
@@ -12,10 +30,23 @@ namespace {
     return setting;             \
   }
 
+/// The name of the scene's apparatus. Reading it gives the scene that apparatus.
+Key apparatus_key() {
+  Key key = plain_key("kind", "", "what is simulated", "one of " + joined(apparatus_names()));
+  key.read = [](const Value& value, Draft& draft) {
+    const auto* name = std::get_if<std::string>(&value.content);
+    const Apparatus* known = name ? apparatus_named(*name) : nullptr;
+    if (known) draft.take(*known);
+    return Complaint{known ? "" : unknown_choice(value, apparatus_names()), value.where};
+  };
+  key.write = [](Draft& draft) { return nlohmann::ordered_json(name_of(draft.scene.geometry.apparatus)); };
+  return key;
+}
+
 std::vector<Key> general_keys() {
   return {
       text("title", AT(draft.scene.title), "what every report calls the scene").needed(),
-      choice("kind", AT(draft.scene.kind), "what is simulated").needed(),
+      apparatus_key().needed(),
       text("extends", AT(draft.extends),
            "another scene, by name or by path, from which every key not given here is taken")
           .otherwise("none"),
@@ -29,93 +60,35 @@ std::vector<Key> general_keys() {
   };
 }
 
+/// "of a slump; of a duct": what every apparatus says of its dimensions.
+std::string dimensions_of_all() {
+  std::string text;
+  for_each_apparatus(
+      [&](const auto& a) { text += (text.empty() ? "" : "; ") + std::string(a.dimensions_meaning); });
+  return text;
+}
+
+/// "axisymmetric (slump), half (l-box)": which apparatus share a choice, by its words, each in the order of
+/// the list.
+template <class Words>
+std::string shared_by(const std::vector<std::string>& in_order, Words words) {
+  std::string text;
+  for (const std::string& choice : in_order) {
+    std::vector<std::string> names;
+    for_each_apparatus([&](const auto& a) {
+      if (words(a) == choice) names.emplace_back(a.name);
+    });
+    if (!names.empty()) text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", choice, joined(names));
+  }
+  return text;
+}
+
 std::vector<Key> geometry_keys() {
   return {
       choice("geometry.dimension", AT(draft.scene.geometry.dimension),
-             "what is computed of the body: axisymmetric, plane (a column of the cone's section), quarter or "
-             "full of a slump; plane of a duct; plane, half or full of an l-box; plane, quarter or full of a "
-             "v-funnel; plane or full of a dam-break")
-          .otherwise("axisymmetric (slump), half (l-box), quarter (v-funnel), plane (duct, dam-break)"),
-      number("geometry.cone_height", "m", above(0.0, largest_length), AT(draft.slump().cone_height),
-             "height of the cone of material")
-          .needed()
-          .only_in({Kind::slump}),
-      number("geometry.cone_radius_top", "m", from(0.0, largest_length), AT(draft.slump().cone_radius_top),
-             "radius of the cone at its top")
-          .needed()
-          .only_in({Kind::slump}),
-      number("geometry.cone_radius_bottom", "m", above(0.0, largest_length),
-             AT(draft.slump().cone_radius_bottom), "radius of the cone at the plate")
-          .needed()
-          .only_in({Kind::slump}),
-      number("geometry.domain_radius", "m", above(0.0, largest_length), AT(draft.slump().domain_radius),
-             "radius of the OpenFOAM mesh; material that reaches it ends a run")
-          .needed()
-          .only_in({Kind::slump}),
-      number("geometry.domain_height", "m", above(0.0, largest_length), AT(draft.slump().domain_height),
-             "height of the OpenFOAM mesh; material that reaches it ends a run")
-          .needed()
-          .only_in({Kind::slump}),
-      number("geometry.height", "m", above(0.0, largest_length), AT(draft.duct().height),
-             "distance between the plates, a whole number of cells")
-          .needed()
-          .only_in({Kind::duct}),
-      number("geometry.mould_lift_velocity", "m/s", above(0.0, 1e3), AT(draft.slump().mould_lift_velocity),
-             "speed at which the mould is lifted off the cone")
-          .otherwise("the cone is released at once")
-          .only_in({Kind::slump}),
-  };
-}
-
-std::vector<Key> l_box_keys() {
-  const auto size = [](const char* name, Access<double> at, const char* meaning) {
-    return number(std::string("geometry.") + name, "m", above(0.0, largest_length), at, meaning)
-        .only_in({Kind::l_box});
-  };
-  return {
-      size("reservoir_length", AT(draft.l_box().reservoir_length),
-           "length of the reservoir along the channel"),
-      size("reservoir_height", AT(draft.l_box().reservoir_height),
-           "height of the reservoir, filled to the brim"),
-      number(
-          "geometry.width", "m", above(0.0, largest_length),
-          +[](Draft& draft) -> double& {
-            return draft.scene.kind == Kind::l_box ? draft.l_box().width : draft.dam_break().width;
-          },
-          "width across the flow")
-          .only_in({Kind::l_box, Kind::dam_break}),
-      size("channel_length", AT(draft.l_box().channel_length), "length of the channel behind the reservoir"),
-      size("channel_height", AT(draft.l_box().channel_height),
-           "height of the opening to the channel, and of the bars"),
-      integer("geometry.rebars", 0, 100, AT(draft.l_box().rebars), "upright bars, evenly across the width")
-          .only_in({Kind::l_box}),
-      size("rebar_diameter", AT(draft.l_box().rebar_diameter), "diameter of the bars"),
-      size("rebar_distance", AT(draft.l_box().rebar_distance),
-           "distance of the bars' axes from the reservoir"),
-      number("geometry.gate_lift_velocity", "m/s", above(0.0, 1e3), AT(draft.l_box().gate_lift_velocity),
-             "speed at which the gate of the reservoir is lifted")
-          .otherwise("the gate is gone at once")
-          .only_in({Kind::l_box}),
-  };
-}
-
-std::vector<Key> v_funnel_and_dam_break_keys() {
-  const auto size = [](const char* name, Access<double> at, const char* meaning, Kind kind) {
-    return number(std::string("geometry.") + name, "m", above(0.0, largest_length), at, meaning)
-        .only_in({kind});
-  };
-  return {
-      size("top_width", AT(draft.v_funnel().top_width), "width at the top", Kind::v_funnel),
-      size("outlet_width", AT(draft.v_funnel().outlet_width), "width of the outlet", Kind::v_funnel),
-      size("depth", AT(draft.v_funnel().depth), "distance between the plates", Kind::v_funnel),
-      size("taper_height", AT(draft.v_funnel().taper_height), "height of the sloping part", Kind::v_funnel),
-      size("neck_height", AT(draft.v_funnel().neck_height), "height of the neck over the outlet",
-           Kind::v_funnel),
-      size("fall_height", AT(draft.v_funnel().fall_height), "height of the outlet over the floor",
-           Kind::v_funnel),
-      size("column_length", AT(draft.dam_break().column_length), "length of the column", Kind::dam_break),
-      size("column_height", AT(draft.dam_break().column_height), "height of the column", Kind::dam_break),
-      size("tank_length", AT(draft.dam_break().tank_length), "length of the tank", Kind::dam_break),
+             "what is computed of the body: " + dimensions_of_all())
+          .otherwise(shared_by({"axisymmetric", "half", "quarter", "plane", "full"},
+                               [](const auto& a) { return to_string(a.usual_dimension); })),
   };
 }
 
@@ -176,16 +149,9 @@ std::vector<Key> wall_and_force_keys() {
   return {
       wall("walls.base", AT(draft.scene.base),
            "how the plate, the plates of a duct or the whole container hold the material"),
-      wall("walls.mould", AT(draft.scene.mould), "how the mould of a slump holds the material")
-          .otherwise("as walls.base")
-          .only_in({Kind::slump}),
       number("forces.gravity", "m/s2", from(0.0, 1e5), AT(draft.scene.forces.gravity), "gravity, downwards")
-          .otherwise("9.81")
-          .only_in({Kind::slump, Kind::l_box, Kind::v_funnel, Kind::dam_break}),
-      steps("forces.body_force", "N/m3", AT(draft.scene.forces.body_force),
-            "force along the duct: a constant, or pairs of the time from which it holds (s) and its value")
-          .needed()
-          .only_in({Kind::duct}),
+          .otherwise(fmt::format("{:g}", standard_gravity))
+          .only_with(places_of([](const auto& a) { return a.under_gravity; })),
   };
 }
 
@@ -196,7 +162,7 @@ std::vector<Key> time_keys() {
           .needed(),
       boolean("time.stop_at_rest", AT(draft.scene.time.stop_at_rest),
               "whether an elasto-viscoplastic run ends as soon as it is at rest (a fluid never is)")
-          .otherwise("true (slump, l-box), false (duct, v-funnel, dam-break)"),
+          .otherwise(shared_by({"true", "false"}, [](const auto& a) { return a.rests ? "true" : "false"; })),
       number("time.rest_bound", "", above(0.0, 1.0), AT(draft.scene.time.rest_bound),
              "at rest: where the relative growth of the spread still to come is bounded by this"),
   };
@@ -216,34 +182,37 @@ std::vector<Key> output_keys() {
 }
 
 std::vector<Key> gauge_keys() {
-  const std::vector<Kind> channels = {Kind::l_box, Kind::dam_break},
-                          growing = {Kind::slump, Kind::l_box, Kind::dam_break};
-  const auto length = [](const char* name, Access<double> at, const char* meaning, const char* fallback,
-                         const std::vector<Kind>& kinds) {
+  const auto judged_by = [](MainGauge gauge) {
+    return places_of([gauge](const auto& a) { return a.main_gauge == gauge; });
+  };
+  const auto growing = places_of(
+      [](const auto& a) { return a.main_gauge == MainGauge::spread || a.main_gauge == MainGauge::front; });
+  const auto length = [&](const char* name, Access<double> at, const char* meaning, const char* fallback,
+                          MainGauge gauge) {
     return number(std::string("gauges.") + name, "m", above(0.0, largest_length), at, meaning)
         .otherwise(fallback)
-        .only_in(kinds);
+        .only_with(judged_by(gauge));
   };
   return {
       length("spread_depth", AT(draft.scene.gauges.spread_depth),
              "depth at which the spread is read; spread_1p5_mm and spread_6_mm at half and at twice of it",
-             "cone_height / 100: 0.003 of an Abrams cone", {Kind::slump}),
+             "cone_height / 100: 0.003 of an Abrams cone", MainGauge::spread),
       length("front_depth", AT(draft.scene.gauges.front_depth), "depth at which the front is read",
-             "height of the body / 200: 0.003 of 0.6", channels),
+             "height of the body / 200: 0.003 of 0.6", MainGauge::front),
       length("end_length", AT(draft.scene.gauges.end_length),
              "length at either end over which the depth there is averaged",
-             "height of the body / 30: 0.02 of 0.6", channels),
+             "height of the body / 30: 0.02 of 0.6", MainGauge::front),
       length("light_depth", AT(draft.scene.gauges.light_depth),
              "material on a line of sight that still hides the light",
-             "height of the funnel / 200: 0.003 of 0.6", {Kind::v_funnel}),
+             "height of the funnel / 200: 0.003 of 0.6", MainGauge::discharge),
       number("gauges.rest_rate", "m/s", above(0.0, 1e3), AT(draft.scene.gauges.rest_rate),
              "growth of spread or front that reports take for rest, as is customary")
           .otherwise("5e-4 of the standard apparatus, with the root of height times gravity")
-          .only_in(growing),
+          .only_with(growing),
       number("gauges.still_speed", "m/s", above(0.0, 1e3), AT(draft.scene.gauges.still_speed),
              "growth below which reports say of a law that can rest that it has come to rest")
           .otherwise("1e-4 of the standard apparatus, with the root of height times gravity")
-          .only_in(growing),
+          .only_with(growing),
       number("gauges.rest_shear_rate", "1/s", above(0.0, largest_time),
              AT(draft.scene.gauges.rest_shear_rate),
              "99th percentile of the shear rate that reports take for rest, as is customary")
@@ -297,11 +266,11 @@ std::vector<Key> mpm_keys() {
           .otherwise(
               "that of a step of CFL 0.75, which is plain APIC; beside walls that do not lie along the "
               "grid 0.02"),
-      number(
-          "mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
-          "share of the volume by which particles overlap, or leave a gap at a floor that holds, that is taken "
-          "back per unit of shear strain; 0 lets material that is sheared for long sink into itself and "
-          "fronts roll over gaps")
+      number("mpm.density_correction", "", from(0.0, 100.0), AT(draft.scene.mpm.density_correction),
+             "share of the volume by which particles overlap, or leave a gap at a floor that holds, that is "
+             "taken "
+             "back per unit of shear strain; 0 lets material that is sheared for long sink into itself and "
+             "fronts roll over gaps")
           .otherwise("1; linear-flip 0.3; ducts and funnels 0; always 0 with paper"),
   };
 }
@@ -350,36 +319,53 @@ std::vector<Key> foam_keys() {
 
 #undef AT
 
+/// Adds a key; one of the same path that another apparatus has already is one key for both.
+void add_key(std::vector<Key>& all, Key key) {
+  const auto same =
+      std::find_if(all.begin(), all.end(), [&](const Key& known) { return known.path() == key.path(); });
+  if (same == all.end()) {
+    all.push_back(std::move(key));
+    return;
+  }
+  same->read = [first = *same, second = key](const Value& value, Draft& draft) {
+    return (second.suits(draft.scene.geometry.apparatus) ? second : first).read(value, draft);
+  };
+  same->write = [first = *same, second = key](Draft& draft) {
+    return (second.suits(draft.scene.geometry.apparatus) ? second : first).write(draft);
+  };
+  same->only.insert(same->only.end(), key.only.begin(), key.only.end());
+}
+
 std::vector<Key> every_key() {
   std::vector<Key> all;
-  for (auto group :
-       {general_keys, geometry_keys, l_box_keys, v_funnel_and_dam_break_keys, material_keys, thixotropy_keys,
-        wall_and_force_keys, time_keys, output_keys, gauge_keys, mpm_keys, foam_keys}) {
+  for (auto group : {general_keys, geometry_keys, material_keys, thixotropy_keys, wall_and_force_keys,
+                     time_keys, output_keys, gauge_keys, mpm_keys, foam_keys}) {
     for (Key& key : group()) all.push_back(std::move(key));
   }
+  for_each_apparatus([&](const auto& a) {
+    using A = std::remove_cvref_t<decltype(a)>;
+    for (Key& key : A::keys()) add_key(all, std::move(key).only_with({index_of_apparatus<A>()}));
+  });
+  const auto place = [](const Key& key) {
+    return std::find_if(sections().begin(), sections().end(),
+                        [&](const Section& section) { return section.name == key.section; }) -
+           sections().begin();
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const Key& a, const Key& b) { return place(a) < place(b); });
   return all;
 }
 
 }  // namespace
 
-void Draft::take_shape_of(Kind kind) {
-  switch (kind) {
-    case Kind::slump:
-      scene.geometry = {Dimension::axisymmetric, SlumpGeometry{}};
-      break;
-    case Kind::duct:
-      scene.geometry = {Dimension::plane, DuctGeometry{}};
-      break;
-    case Kind::l_box:
-      scene.geometry = {Dimension::half, LBoxGeometry{}};
-      break;
-    case Kind::v_funnel:
-      scene.geometry = {Dimension::quarter, VFunnelGeometry{}};
-      break;
-    case Kind::dam_break:
-      scene.geometry = {Dimension::plane, DamBreakGeometry{}};
-      break;
-  }
+void Draft::take(const Apparatus& apparatus) {
+  scene.geometry.apparatus = apparatus;
+  std::visit(
+      [&](const auto& a) {
+        scene.geometry.dimension = a.usual_dimension;
+        if (a.under_gravity) scene.forces.gravity = standard_gravity;
+        scene.time.stop_at_rest = a.rests;
+      },
+      apparatus);
 }
 
 const std::vector<Section>& sections() {
@@ -412,10 +398,10 @@ const Key* find_key(const std::string& path) {
   return nullptr;
 }
 
-std::vector<std::string> key_names(const std::string& section, std::optional<Kind> kind) {
+std::vector<std::string> key_names(const std::string& section, const Apparatus* apparatus) {
   std::vector<std::string> names;
   for (const Key& key : keys()) {
-    if (key.section == section && (!kind || key.suits(*kind))) names.push_back(key.name);
+    if (key.section == section && (!apparatus || key.suits(*apparatus))) names.push_back(key.name);
   }
   return names;
 }

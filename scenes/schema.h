@@ -24,13 +24,8 @@ struct Draft {
   std::string extends;             ///< followed by the reader before any other key is stored
   std::set<std::string> unusable;  ///< keys that are missing or at fault: nothing may be concluded from them
 
-  SlumpGeometry& slump() { return std::get<SlumpGeometry>(scene.geometry.shape); }
-  LBoxGeometry& l_box() { return std::get<LBoxGeometry>(scene.geometry.shape); }
-  VFunnelGeometry& v_funnel() { return std::get<VFunnelGeometry>(scene.geometry.shape); }
-  DamBreakGeometry& dam_break() { return std::get<DamBreakGeometry>(scene.geometry.shape); }
-  /// Gives the scene the shape of a kind, with its standard sizes.
-  void take_shape_of(Kind);
-  DuctGeometry& duct() { return std::get<DuctGeometry>(scene.geometry.shape); }
+  /// Gives the scene an apparatus, and what is usual with it: its dimension, gravity, whether it rests.
+  void take(const Apparatus&);
 };
 
 /// One key of a scene.
@@ -39,9 +34,9 @@ struct Key {
   std::string name{};
   std::string unit{};
   std::string meaning{};
-  std::string takes{};             ///< type and range in words
-  std::vector<Kind> only_kinds{};  ///< the kinds of scene that have this key; empty: all
-  bool required = false;           ///< by every scene of its kind (of [thixotropy]: where the table is given)
+  std::string takes{};              ///< type and range in words
+  std::vector<std::size_t> only{};  ///< places in the list of the apparatus that have this key; empty: all
+  bool required = false;   ///< by every scene with its apparatus (of [thixotropy]: where the table is given)
   std::string fallback{};  ///< what holds where it is not given, where that is not the constant default
   std::string rival{};     ///< the key whose place this one takes
   /// Stores the value, or says what is wrong with it.
@@ -52,9 +47,9 @@ struct Key {
   std::string path() const { return section.empty() ? name : section + "." + name; }
 
   Key&& needed() && { return required = true, std::move(*this); }
-  Key&& only_in(std::vector<Kind> kinds) && { return only_kinds = std::move(kinds), std::move(*this); }
-  bool suits(Kind kind) const {
-    return only_kinds.empty() || std::find(only_kinds.begin(), only_kinds.end(), kind) != only_kinds.end();
+  Key&& only_with(std::vector<std::size_t> places) && { return only = std::move(places), std::move(*this); }
+  bool suits(const Apparatus& apparatus) const {
+    return only.empty() || std::find(only.begin(), only.end(), apparatus.index()) != only.end();
   }
   Key&& otherwise(std::string text) && { return fallback = std::move(text), std::move(*this); }
   Key&& replaces(std::string path_of_rival) && { return rival = std::move(path_of_rival), std::move(*this); }
@@ -72,7 +67,7 @@ const std::vector<Key>& keys();
 /// The key of this dotted path, or null.
 const Key* find_key(const std::string& path);
 
-/// Names of the keys of a section that this kind of scene may give (every kind where none is named).
-std::vector<std::string> key_names(const std::string& section, std::optional<Kind> = std::nullopt);
+/// Names of the keys of a section that scenes with this apparatus may give (with any where it is null).
+std::vector<std::string> key_names(const std::string& section, const Apparatus* = nullptr);
 
 }  // namespace flowrest::scenes

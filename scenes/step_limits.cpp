@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/pieces.h"
+
 namespace flowrest::scenes {
 
 namespace {
@@ -50,14 +52,10 @@ double largest_courant_number(double poisson_ratio) {
 double StepLimits::largest() const { return std::min(largest_cfl * acoustic, viscous); }
 
 double free_fall_speed(const Scene& scene) {
-  if (scene.kind == Kind::duct) return 0.0;
-  double drop = scene.body_height();
-  if (scene.kind == Kind::v_funnel) drop += scene.v_funnel().fall_height;
-  return std::sqrt(2.0 * scene.forces.gravity * drop);
+  return std::sqrt(2.0 * scene.forces.gravity * pieces_of(scene).drop);
 }
 
 double pressure_at_rest(const Scene& scene) {
-  if (scene.kind == Kind::duct) return 0.0;
   return scene.material.density * scene.forces.gravity * scene.body_height();
 }
 
@@ -81,45 +79,10 @@ StepLimits step_limits(const Scene& scene) {
 
 namespace {
 
-/// Cells along a periodic duct: enough for the widest kernel to see itself only once.
-constexpr double duct_columns = 4.0;
-
 double occupied_cells(const Scene& scene) {
-  const double cell = scene.mpm.cell;
-  if (scene.kind == Kind::duct) return duct_columns * scene.duct().height / cell;
-  const bool plane = scene.geometry.dimension == Dimension::plane;
-  const double share = scene.geometry.dimension == Dimension::half      ? 0.5
-                       : scene.geometry.dimension == Dimension::quarter ? 0.25
-                                                                        : 1.0;
-  const double cells_in_space = share / (cell * cell * cell);
-  if (scene.kind == Kind::l_box) {
-    const LBoxGeometry& box = scene.l_box();
-    const double section = box.reservoir_length * box.reservoir_height;
-    return plane ? section / (cell * cell) : section * box.width * cells_in_space;
-  }
-  if (scene.kind == Kind::v_funnel) {
-    const VFunnelGeometry& funnel = scene.v_funnel();
-    return plane ? 0.5 * funnel.volume() / funnel.depth / (cell * cell) : funnel.volume() * cells_in_space;
-  }
-  if (scene.kind == Kind::dam_break) {
-    const DamBreakGeometry& dam = scene.dam_break();
-    const double section = dam.column_length * dam.column_height;
-    return plane ? section / (cell * cell) : section * dam.width * cells_in_space;
-  }
-  const SlumpGeometry& cone = scene.slump();
-  const double half_section = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
-  switch (scene.geometry.dimension) {
-    case Dimension::axisymmetric:
-    case Dimension::plane:  // by symmetry, half of the section
-      return half_section / (cell * cell);
-    case Dimension::half:
-      return 0.5 * cone.volume() / (cell * cell * cell);
-    case Dimension::quarter:
-      return 0.25 * cone.volume() / (cell * cell * cell);
-    case Dimension::full:
-      return cone.volume() / (cell * cell * cell);
-  }
-  return 0.0;
+  double extent = 0.0;
+  for (const Body& body : pieces_of(scene).bodies) extent += body.extent;
+  return extent / std::pow(scene.mpm.cell, scene.spatial_dimension());
 }
 
 }  // namespace
@@ -137,7 +100,7 @@ MpmEstimate estimate_mpm(const Scene& scene) {
 }
 
 double smallest_foam_cell(const Scene& scene) {
-  const bool bars = scene.kind == Kind::l_box && scene.l_box().rebars > 0;
+  const bool bars = scene.kind() == Kind::l_box && scene.l_box().rebars > 0;
   return bars ? std::min(scene.foam.cell, scene.l_box().rebar_diameter / 4.0) : scene.foam.cell;
 }
 
@@ -158,7 +121,7 @@ double largest_foam_step(const Scene& scene) {
 double grown_foam_step(const Scene& scene) {
   constexpr double of_sample = 0.4;
   const double step = largest_foam_step(scene);
-  if (scene.kind != Kind::slump || scene.foam.max_time_step || scene.foam.laws == FoamLaws::built_in)
+  if (scene.kind() != Kind::slump || scene.foam.max_time_step || scene.foam.laws == FoamLaws::built_in)
     return step;
   const double interval = std::min(scene.output.history_interval, scene.output.profile_interval);
   return std::max(step, std::min(scene.foam.step_growth * step, of_sample * interval));

@@ -24,22 +24,19 @@ std::string default_text(const Key& key, const Json& of_empty_scene) {
   return key.fallback.empty() ? fmt::format("`{}`", toml_value(of_empty_scene)) : key.fallback;
 }
 
-/// A scene of the kind a key belongs to, with everything left at its default.
+/// A scene with the first apparatus that a key belongs to, with everything left at its default.
 Draft empty_draft(const Key& key) {
   Draft draft;
   draft.scene.thixotropy.emplace();
-  if (!key.only_kinds.empty()) {
-    draft.scene.kind = key.only_kinds.front();
-    draft.take_shape_of(draft.scene.kind);
-  }
+  if (!key.only.empty()) draft.take(*apparatus_named(apparatus_names()[key.only.front()]));
   return draft;
 }
 
 std::string reference_row(const Key& key) {
   Draft draft = empty_draft(key);
-  std::vector<std::string> kinds;
-  for (const Kind kind : key.only_kinds) kinds.push_back(to_string(kind));
-  const std::string kind = kinds.empty() ? "" : fmt::format(" ({} only)", joined(kinds));
+  std::vector<std::string> names;
+  for (const std::size_t place : key.only) names.push_back(apparatus_names()[place]);
+  const std::string kind = names.empty() ? "" : fmt::format(" ({} only)", joined(names));
   return fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.name, key.takes, key.unit,
                      default_text(key, key.write(draft)), key.meaning, kind);
 }

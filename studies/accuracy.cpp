@@ -25,7 +25,7 @@ constexpr double twin_is_coarser = 1.6;
 
 /// The size of a scene's body, m.
 double length_of(const scenes::Scene& scene) {
-  return scene.kind == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.body_height();
+  return scene.kind() == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.body_height();
 }
 
 std::string percent(double fraction) { return compare::words::percent(fraction); }
@@ -67,7 +67,7 @@ Choice choice_from(const std::string& name, const char* what) {
 
 /// A cell that suits the scene: in a duct a whole number of them lies between the plates.
 double suited_cell(const scenes::Scene& scene, double cell) {
-  if (scene.kind != scenes::Kind::duct) return cell;
+  if (scene.kind() != scenes::Kind::duct) return cell;
   return scene.duct().height / std::ceil(scene.duct().height / cell * (1.0 - 1e-9));
 }
 
@@ -88,7 +88,7 @@ std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const s
   std::vector<Candidate> candidates;
   for (const Knowledge& k : all)
     for (const KnownPoint& p : k.points)
-      if (k.kind == scene.kind && k.dimension == scene.geometry.dimension && p.model == scene.material.model)
+      if (k.kind == scene.kind() && k.dimension == scene.geometry.dimension && p.model == scene.material.model)
         candidates.push_back({&k, &p});
   return candidates;
 }
@@ -112,7 +112,7 @@ std::string with_own_cell(const scenes::Scene& scene) {
       "{}: no study has measured what accuracy a {} ({}, {}) costs, so no settings can be chosen for one; "
       "known: "
       "{}. Write a study of such scenes and run it with --keep, or give the cell yourself: `{}`",
-      scene.path.string(), scenes::to_string(scene.kind), scenes::to_string(scene.geometry.dimension),
+      scene.path.string(), scenes::to_string(scene.kind()), scenes::to_string(scene.geometry.dimension),
       scenes::to_string(scene.material.model), known.empty() ? "nothing" : known, with_own_cell(scene)));
 }
 
@@ -150,7 +150,7 @@ Json knowledge_json(const Results& results) {
           {"study", results.study.name},
           {"cut", results.cut},
           {"scene", results.study.scene},
-          {"kind", scenes::to_string(scene->kind)},
+          {"kind", scenes::to_string(scene->kind())},
           {"dimension", scenes::to_string(scene->geometry.dimension)},
           {"length_m", length_of(*scene)},
           {"quantity", quantity},

@@ -107,7 +107,7 @@ TEST(Accuracy, EveryKindOfSceneMayHaveItsKnowledgeAndIsHeldByTheQuantityThatIsKn
                                             {"cut", ""},
                                             {"scene", name},
                                             {"quantity", quantity},
-                                            {"kind", scenes::to_string(scene.kind)},
+                                            {"kind", scenes::to_string(scene.kind())},
                                             {"dimension", scenes::to_string(scene.geometry.dimension)},
                                             {"length_m", scene.body_height()},
                                             {"relative_uncertainty", 0.001},

@@ -96,7 +96,7 @@ std::string too_fast(const runs::Run& run, const scenes::Scene& scene) {
 
 std::string beyond_the_domain(const runs::Run& run, const scenes::Scene& scene) {
   const auto* spread = column(run, "spread_mm");
-  if (scene.kind != scenes::Kind::slump || !spread) return {};
+  if (scene.kind() != scenes::Kind::slump || !spread) return {};
   for (const double v : *spread)
     if (1e-3 * v > 2.0 * scene.slump().domain_radius * 1.05)
       return fmt::format("its spread of {:.3g} mm lies beyond the domain", v);

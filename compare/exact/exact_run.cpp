@@ -218,7 +218,7 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
 }  // namespace
 
 void check_film(const Scene& scene) {
-  if (scene.kind != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
+  if (scene.kind() != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
     refuse(scene, "a thin film spreads from a slump about its axis");
   if (scene.thixotropy || scene.base.law != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
       !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0))
@@ -267,7 +267,7 @@ std::vector<ExactRun> write_exact_runs(const Scene& scene, const std::filesystem
   if (std::filesystem::exists(directory / "run.json"))
     throw RunError(fmt::format("{}: is itself a run; name the folder that shall hold the exact runs",
                                directory.string()));
-  switch (scene.kind) {
+  switch (scene.kind()) {
     case scenes::Kind::slump:
       return write_slumps(scene, directory, flocculation, replace);
     case scenes::Kind::duct:

@@ -53,7 +53,7 @@ std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
 struct SlumpFacts {
   exact::Bingham material;
   double gravity = 0.0;
-  scenes::SlumpGeometry cone;
+  scenes::Slump cone;
 };
 std::optional<SlumpFacts> slump_facts(const RunView& view) {
   const auto density = setting(view, "/material/density");
@@ -70,7 +70,7 @@ std::optional<SlumpFacts> slump_facts(const RunView& view) {
   if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
   return SlumpFacts{{*density, *yield_stress, *viscosity},
                     *gravity,
-                    scenes::SlumpGeometry{*height, *top, *bottom, domain.value_or(0.0), 0.0, {}}};
+                    scenes::Slump{*height, *top, *bottom, domain.value_or(0.0), 0.0, {}}};
 }
 
 std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {

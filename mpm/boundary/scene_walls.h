@@ -2,7 +2,7 @@
 
 #include "mpm/boundary/walls.h"
 #include "mpm/solver/layout.h"
-#include "scenes/scene.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::mpm {
 
@@ -12,7 +12,7 @@ struct SceneWalls {
   std::vector<Wall> walls;
 };
 
-/// `cell` is the cell size in use, m.
-SceneWalls walls_of(const scenes::Scene&, double cell);
+/// The walls and planes of symmetry of an apparatus. `cell` is the cell size in use, m.
+SceneWalls walls_of(const scenes::Pieces&, int dimension, double cell);
 
 }  // namespace flowrest::mpm

@@ -92,7 +92,7 @@ Gauges::Gauges(const scenes::Scene& scene)
     : scene_(scene), factor_(whole_body_factor(scene)), cell_(cell_size(scene)) {}
 
 Measures Gauges::measure(Solver& solver) const {
-  switch (scene_.kind) {
+  switch (scene_.kind()) {
     case scenes::Kind::slump:
       return measure_slump(solver);
     case scenes::Kind::duct:
@@ -171,7 +171,7 @@ Measures Gauges::measure_channel(Solver& solver) const {
   const double front_mass_995 = quantile_of_motion(
       solver, 0.995, [](const ParticleBatch& b, std::size_t i) { return b.position[0][i]; });
   Sums sums(scene_, factor_, solver);
-  const bool box = scene_.kind == scenes::Kind::l_box;
+  const bool box = scene_.kind() == scenes::Kind::l_box;
   const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
   const double begin = box ? scene_.l_box().reservoir_length : 0.0;
   const bool plane = scene_.spatial_dimension() == 2;
@@ -254,7 +254,7 @@ std::vector<std::string> Gauges::columns() const {
   const auto add = [&](const std::vector<std::string>& more) {
     names.insert(names.end(), more.begin(), more.end());
   };
-  switch (scene_.kind) {
+  switch (scene_.kind()) {
     case scenes::Kind::slump:
       add({"spread_mm", "spread_1p5_mm", "spread_6_mm", "spread_mass_995_mm", "height_mm"});
       break;
@@ -278,7 +278,7 @@ std::vector<std::string> Gauges::columns() const {
 
 std::vector<double> Gauges::row(double time, double step, const Measures& m) const {
   std::vector<double> row = {time};
-  switch (scene_.kind) {
+  switch (scene_.kind()) {
     case scenes::Kind::slump:
       for (const double times : {1.0, 0.5, 2.0})
         row.push_back(1e3 * runs::spread(m.coordinate, m.value, times * scene_.gauges.spread_depth));
@@ -305,17 +305,17 @@ std::vector<double> Gauges::row(double time, double step, const Measures& m) con
 }
 
 double Gauges::headline_value(const Measures& m) const {
-  if (scene_.kind == scenes::Kind::slump)
+  if (scene_.kind() == scenes::Kind::slump)
     return 1e3 * runs::spread(m.coordinate, m.value, scene_.gauges.spread_depth);
-  if (scene_.kind == scenes::Kind::v_funnel) return 100.0 * m.discharged;
-  if (scene_.kind != scenes::Kind::duct) return 1e3 * m.front;
+  if (scene_.kind() == scenes::Kind::v_funnel) return 100.0 * m.discharged;
+  if (scene_.kind() != scenes::Kind::duct) return 1e3 * m.front;
   // The plug is the middle of the duct: the mean of the innermost two rows.
   const std::size_t middle = m.value.size() / 2;
   return m.value.size() < 2 ? runs::nothing : 0.5 * (m.value[middle - 1] + m.value[middle]);
 }
 
 std::string Gauges::headline(const Measures& m) const {
-  switch (scene_.kind) {
+  switch (scene_.kind()) {
     case scenes::Kind::slump:
       return runs::shown_length("spread", 1e-3 * headline_value(m), scene_.gauges.spread_depth);
     case scenes::Kind::duct:

@@ -27,6 +27,7 @@
 #include "runs/progress.h"
 #include "runs/run_folder.h"
 #include "scenes/cost.h"
+#include "scenes/pieces.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::mpm {
@@ -43,23 +44,6 @@ constexpr double energy_made_allowed = 0.05;
 constexpr double relaxation_time_beside_walls = 0.02;
 /// Below this many cells over the depth of a slump or across a passage a shear layer is not resolved.
 constexpr double cells_over_depth_wanted = 3.0;
-
-/// The narrowest passage that walls which hold the material leave it, m; infinite where there is none.
-double narrowest_passage(const scenes::Scene& scene) {
-  const double none = std::numeric_limits<double>::infinity();
-  if (scene.base.law == scenes::Wall::slip) return none;
-  const bool plane = scene.geometry.dimension == scenes::Dimension::plane;
-  switch (scene.kind) {
-    case scenes::Kind::duct:
-      return scene.duct().height;
-    case scenes::Kind::l_box:
-      return std::min(scene.l_box().channel_height, plane ? none : scene.l_box().width);
-    case scenes::Kind::v_funnel:
-      return std::min(scene.v_funnel().outlet_width, plane ? none : scene.v_funnel().depth);
-    default:
-      return none;
-  }
-}
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -89,6 +73,7 @@ class MpmRun {
   MpmRun(const scenes::Scene& scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint,
          const std::function<runs::RunWriter()>& open)
       : scene_(scene),
+        pieces_(scenes::pieces_of(scene)),
         options_(options),
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
         gauges_(scene_),
@@ -259,16 +244,15 @@ class MpmRun {
       throw runs::NumericsError(
           fmt::format("the discretisation has made {:.3g} J of {:.3g} J: the step is unstable",
                       -measures_.energies.numerical, scale));
-    if (scene_.kind != scenes::Kind::slump) return;
-    const auto& g = scene_.slump();
-    if (measures_.farthest > g.domain_radius)
+    if (!pieces_.domain) return;
+    const scenes::Domain& domain = *pieces_.domain;
+    if (measures_.farthest > domain.radius)
       throw runs::NumericsError(fmt::format(
           "the material has reached geometry.domain_radius = {} m at {:.4g} s: enlarge the domain",
-          g.domain_radius, state_.time));
-    if (measures_.highest > g.domain_height)
-      throw runs::NumericsError(
-          fmt::format("the material has risen to geometry.domain_height = {} m at {:.4g} s", g.domain_height,
-                      state_.time));
+          domain.radius, state_.time));
+    if (measures_.highest > domain.height)
+      throw runs::NumericsError(fmt::format(
+          "the material has risen to geometry.domain_height = {} m at {:.4g} s", domain.height, state_.time));
   }
 
   void output() {
@@ -431,14 +415,14 @@ class MpmRun {
                          *scene_.mpm.time_step, limits.largest());
     if (const std::string noise = state_.noise.fault(scene_.body_height()); !noise.empty())
       return "noisy: " + noise;
-    if (scene_.kind == scenes::Kind::slump) {
+    if (pieces_.profile.radial()) {
       const double depth =
           runs::centre_depth(measures_.coordinate, measures_.value, scene_.gauges.spread_depth);
       const double cells = depth / settings_.cell;
       if (cells < cells_over_depth_wanted)
         return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
     }
-    const double across = narrowest_passage(scene_) / settings_.cell;
+    const double across = pieces_.passage / settings_.cell;
     if (across < cells_over_depth_wanted)
       return fmt::format("noisy: under-resolved, {:.1f} cells across the narrowest passage", across);
     return "sound";
@@ -486,6 +470,7 @@ class MpmRun {
   }
 
   scenes::Scene scene_;
+  scenes::Pieces pieces_;
   RunOptions options_;
   SolverSettings settings_;
   Gauges gauges_;

@@ -44,7 +44,7 @@ SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const sce
                                double resume_time)
     : directory_(directory),
       cell_(cell_size(scene)),
-      duct_(scene.kind == scenes::Kind::duct),
+      duct_(scene.kind() == scenes::Kind::duct),
       dimension_(scene.spatial_dimension()) {
   std::ifstream file(directory_ / "particles.hdf.series");
   const auto series = nlohmann::json::parse(file, nullptr, false);

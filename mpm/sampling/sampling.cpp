@@ -10,33 +10,20 @@
 
 #include "mpm/sampling/gmsh_mesh.h"
 #include "mpm/solver/settings.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::mpm {
 
 namespace {
 
-using Point = std::array<double, 3>;
+using scenes::Body;
+using scenes::Filling;
+using scenes::Point;
 
 /// Points per axis and site that decide how much of a site lies inside the body.
 constexpr int probes = 4;
 /// Sites with less than this inside are left out; the scaling makes up for their volume.
 constexpr double smallest_share = 0.2;
-
-/// A body to fill: its bounding box, whether a point is inside, its volume, and its outline for a mesh.
-struct Body {
-  Point lower{}, upper{};
-  std::function<bool(const Point&)> contains;
-  bool convex = false;
-  double volume = 0.0;
-  std::vector<std::array<double, 2>> outline;  ///< corners, along the first axis and the vertical one
-  double turn = 0.0;  ///< rad, in space: the outline is turned about the vertical axis
-};
-
-/// Whether the material has come to rest in a container before the scene begins, and so carries its weight.
-bool stands_in_a_container(const scenes::Scene& scene) {
-  return scene.kind == scenes::Kind::l_box || scene.kind == scenes::Kind::v_funnel ||
-         (scene.kind == scenes::Kind::slump && scene.slump().mould_lift_velocity);
-}
 
 /// Volume ratios of material under its own weight (Yu et al. 2026, Eq. 6 solved for J), against the depth
 /// under its surface.
@@ -80,142 +67,31 @@ class WeightTable {
   std::vector<double> ratio_;
 };
 
-Body cone(const scenes::Scene& scene) {
-  const auto& g = scene.slump();
-  const int dim = scene.spatial_dimension();
-  const bool full = scene.geometry.dimension == scenes::Dimension::full;
-  const double reach = std::max(g.cone_radius_bottom, g.cone_radius_top);
-  Body body;
-  for (int a = 0; a < dim - 1; ++a) {
-    body.lower[static_cast<std::size_t>(a)] = full ? -reach : 0.0;
-    body.upper[static_cast<std::size_t>(a)] = reach;
-  }
-  const auto up = static_cast<std::size_t>(dim - 1);
-  body.upper[up] = g.cone_height;
-  body.contains = [g, dim, up](const Point& x) {
-    if (x[up] < 0.0 || x[up] > g.cone_height) return false;
-    const double radius =
-        g.cone_radius_bottom + (g.cone_radius_top - g.cone_radius_bottom) * x[up] / g.cone_height;
-    return (dim == 3 ? std::hypot(x[0], x[1]) : std::abs(x[0])) <= radius;
-  };
-  body.convex = true;
-  body.volume = scene.geometry.dimension == scenes::Dimension::plane
-                    ? 0.5 * (g.cone_radius_bottom + g.cone_radius_top) * g.cone_height
-                    : g.volume() / whole_body_factor(scene);
-  body.outline = {
-      {0.0, 0.0}, {g.cone_radius_bottom, 0.0}, {g.cone_radius_top, g.cone_height}, {0.0, g.cone_height}};
-  if (g.cone_radius_top == 0.0) body.outline.pop_back();
-  if (g.cone_radius_bottom == 0.0) body.outline.erase(body.outline.begin() + 1);
-  if (dim == 3) body.turn = full ? 2.0 * std::numbers::pi : 0.5 * std::numbers::pi;
-  return body;
-}
-
-/// The outline of a body that fills its bounding box.
-std::vector<std::array<double, 2>> corners(const Body& body, std::size_t up) {
-  return {{body.lower[0], body.lower[up]},
-          {body.upper[0], body.lower[up]},
-          {body.upper[0], body.upper[up]},
-          {body.lower[0], body.upper[up]}};
-}
-
-/// A box from the origin.
-Body box(const Point& size) {
-  Body body;
-  body.upper = size;
-  body.convex = true;
+/// A box of what was poured into it unburdened: as high as it stands under its own weight.
+Body settled(Body body, std::size_t up, double height) {
+  for (auto& corner : body.outline)
+    if (corner[1] == body.upper[up]) corner[1] = height;
+  body.upper[up] = height;
   body.volume = 1.0;
-  for (const double edge : size)
-    if (edge > 0.0) body.volume *= edge;
-  body.outline = corners(body, size[2] > 0.0 ? 2 : 1);
-  body.contains = [size](const Point& x) {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (x[a] < 0.0 || x[a] > size[a]) return false;
-    return true;
-  };
+  for (std::size_t a = 0; a <= up; ++a) body.volume *= body.upper[a] - body.lower[a];
   return body;
-}
-
-/// The reservoir, as far as its concrete fills it under its own weight.
-Body l_box(const scenes::Scene& scene) {
-  const auto& g = scene.l_box();
-  const double height = WeightTable(scene).settled(g.reservoir_height);
-  if (scene.spatial_dimension() == 2) return box({g.reservoir_length, height, 0.0});
-  const bool half = scene.geometry.dimension == scenes::Dimension::half;
-  return box({g.reservoir_length, half ? 0.5 * g.width : g.width, height});
-}
-
-Body dam_break(const scenes::Scene& scene) {
-  const auto& g = scene.dam_break();
-  if (scene.spatial_dimension() == 2) return box({g.column_length, g.column_height, 0.0});
-  return box({g.column_length, g.width, g.column_height});
-}
-
-Body v_funnel(const scenes::Scene& scene) {
-  const auto& g = scene.v_funnel();
-  const int dim = scene.spatial_dimension();
-  const auto up = static_cast<std::size_t>(dim - 1);
-  const bool full = scene.geometry.dimension == scenes::Dimension::full;
-  Body body;
-  body.upper = {0.5 * g.top_width, dim == 3 ? 0.5 * g.depth : 0.0, 0.0};
-  for (std::size_t a = 0; a < up; ++a) body.lower[a] = full ? -body.upper[a] : 0.0;
-  body.upper[up] = g.height();
-  body.contains = [g, up, lower = body.lower, upper = body.upper](const Point& x) {
-    for (std::size_t a = 0; a <= up; ++a)
-      if (x[a] < lower[a] || x[a] > upper[a]) return false;
-    return std::abs(x[0]) <= 0.5 * g.width_at(x[up]);
-  };
-  body.volume = dim == 2 ? 0.5 * g.volume() / g.depth : g.volume() / whole_body_factor(scene);
-  const auto corner = [&](double height) { return std::array<double, 2>{0.5 * g.width_at(height), height}; };
-  body.outline = {corner(0.0), corner(g.neck_height), corner(g.height())};
-  if (g.neck_height <= 0.0) body.outline.erase(body.outline.begin());
-  // The other side is the mirror image, or the middle.
-  for (std::size_t i = body.outline.size(); i-- > 0;)
-    if (full) body.outline.push_back({-body.outline[i][0], body.outline[i][1]});
-  if (!full) {
-    body.outline.push_back({0.0, g.height()});
-    body.outline.push_back({0.0, 0.0});
-  }
-  return body;
-}
-
-Body duct(const scenes::Scene& scene) {
-  Body body;
-  body.upper = {block_edge * cell_size(scene), scene.duct().height, 0.0};
-  body.contains = [top = scene.duct().height](const Point& x) { return x[1] >= 0.0 && x[1] <= top; };
-  body.convex = true;
-  body.volume = body.upper[0] * body.upper[1];
-  body.outline = corners(body, 1);
-  return body;
-}
-
-Body body_of(const scenes::Scene& scene) {
-  switch (scene.kind) {
-    case scenes::Kind::slump:
-      return cone(scene);
-    case scenes::Kind::duct:
-      return duct(scene);
-    case scenes::Kind::l_box:
-      return l_box(scene);
-    case scenes::Kind::v_funnel:
-      return v_funnel(scene);
-    case scenes::Kind::dam_break:
-      return dam_break(scene);
-  }
-  return {};
 }
 
 /// Fills a body with particles, as often as it is asked to: that takes less than to remember them all.
 class Sampler {
  public:
-  explicit Sampler(const scenes::Scene& scene)
-      : scene_(scene), body_(body_of(scene)), dim_(scene.spatial_dimension()), cell_(cell_size(scene)) {
+  Sampler(const scenes::Scene& scene, Body body)
+      : scene_(scene), body_(std::move(body)), dim_(scene.spatial_dimension()), cell_(cell_size(scene)) {
     for (int a = 0; a < dim_; ++a) sites_[a] = scene.mpm.particles_per_cell.at(static_cast<std::size_t>(a));
+    if (body_.filling != Filling::unburdened) weight_.emplace(scene);
+    const auto up = static_cast<std::size_t>(vertical_axis(scene));
+    if (body_.filling == Filling::poured_to_rest)
+      body_ = settled(body_, up, weight_->settled(body_.upper[up]));
     if (scene.mpm.seeding == scenes::Seeding::gmsh) {
       const MeshedBody meshed{body_.outline, dim_, body_.turn, body_.lower[1], body_.upper[1]};
       const double sites = static_cast<double>(sites_[0]) * sites_[1] * sites_[2];
       elements_ = mesh_by_gmsh(meshed, std::pow(cell_, dim_) / sites);
     }
-    if (stands_in_a_container(scene)) weight_.emplace(scene);
     double total = 0.0;
     fill([&](const Seed& seed) { total += seed.volume; });
     scale_ = body_.volume / total;
@@ -300,7 +176,7 @@ class Sampler {
       Point within{};
       for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a)
         within[a] = corner >> a & 1 ? 1.0 + further : -further;
-      inside = body_.contains(global(cell, within));
+      inside = contains(global(cell, within));
     }
     return inside;
   }
@@ -322,7 +198,7 @@ class Sampler {
           const Point within = {lower[0] + (i + 0.5) / probes * size[0],
                                 lower[1] + (j + 0.5) / probes * size[1],
                                 dim_ == 3 ? lower[2] + (k + 0.5) / probes * size[2] : 0.0};
-          if (!all_inside && !body_.contains(global(cell, within))) continue;
+          if (!all_inside && !contains(global(cell, within))) continue;
           ++inside;
           for (std::size_t a = 0; a < 3; ++a) centroid[a] += within[a];
         }
@@ -332,6 +208,11 @@ class Sampler {
     if (scene_.mpm.seeding == scenes::Seeding::jittered) centroid = jittered(cell, lower, size, centroid);
     add_seed(use, cell, centroid, volume * share);
     return true;
+  }
+
+  bool contains(const Point& x) const {
+    const auto up = static_cast<std::size_t>(dim_ - 1);
+    return x[up] <= body_.upper[up] && body_.contains(x);
   }
 
   /// `size` is the area in the plane, also where that stands for a ring (Pappus: exact at a centroid).
@@ -351,7 +232,7 @@ class Sampler {
       Point within{};
       for (std::size_t a = 0; a < static_cast<std::size_t>(dim_); ++a)
         within[a] = lower[a] + uniform() * size[a];
-      if (body_.contains(global(cell, within))) return within;
+      if (contains(global(cell, within))) return within;
     }
     return centroid;
   }
@@ -380,8 +261,11 @@ class Sampler {
 }  // namespace
 
 SeedSource seeds_of(const scenes::Scene& scene) {
-  return [sampler = std::make_shared<Sampler>(scene)](const std::function<void(const Seed&)>& use) {
-    sampler->sample(use);
+  std::vector<std::shared_ptr<Sampler>> samplers;
+  for (const Body& body : scenes::pieces_of(scene).bodies)
+    samplers.push_back(std::make_shared<Sampler>(scene, body));
+  return [samplers](const std::function<void(const Seed&)>& use) {
+    for (const auto& sampler : samplers) sampler->sample(use);
   };
 }
 

@@ -4,18 +4,19 @@
 #include <limits>
 
 #include "mpm/boundary/scene_walls.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::mpm {
 
 namespace {
 
-double density_correction(const scenes::Scene& scene) {
+double density_correction(const scenes::Scene& scene, const scenes::Pieces& pieces) {
   const auto& mpm = scene.mpm;
   if (mpm.scheme == scenes::Scheme::paper) return 0.0;
-  // A duct has no free surface to make room at: its particles would only shrink, and with them what resists.
-  // Nor is there one in a funnel's neck; and in the heap under it, into which a jet drives particles,
+  // Where there is no free surface to make room at, particles would only shrink, and with them what resists.
+  // Nor is there one in a neck that runs full; and in the heap under it, into which a jet drives particles,
   // pressure would make more energy than it may.
-  const bool left_alone = scene.kind == scenes::Kind::duct || scene.kind == scenes::Kind::v_funnel;
+  const bool left_alone = !pieces.free_surface || pieces.runs_out;
   const double usual = mpm.scheme == scenes::Scheme::quadratic_apic ? 1.0 : 0.3;
   return mpm.density_correction.value_or(left_alone ? 0.0 : usual);
 }
@@ -23,24 +24,11 @@ double density_correction(const scenes::Scene& scene) {
 }  // namespace
 
 double cell_size(const scenes::Scene& scene) {
-  if (scene.kind != scenes::Kind::duct) return scene.mpm.cell;
-  return scene.duct().height / std::max(1.0, std::round(scene.duct().height / scene.mpm.cell));
+  const auto height = scenes::pieces_of(scene).whole_cells_over;
+  return height ? *height / std::max(1.0, std::round(*height / scene.mpm.cell)) : scene.mpm.cell;
 }
 
-double whole_body_factor(const scenes::Scene& scene) {
-  // A slump's and a funnel's section are cut in half along the middle, the others have no middle.
-  const bool halved = scene.kind == scenes::Kind::slump || scene.kind == scenes::Kind::v_funnel;
-  switch (scene.geometry.dimension) {
-    case scenes::Dimension::quarter:
-      return 4.0;
-    case scenes::Dimension::half:
-      return 2.0;
-    case scenes::Dimension::plane:
-      return halved ? 2.0 : 1.0;
-    default:
-      return 1.0;
-  }
-}
+double whole_body_factor(const scenes::Scene& scene) { return scenes::pieces_of(scene).whole_over_computed; }
 
 std::array<double, 3> acceleration_at(const scenes::Scene& scene, double time) {
   std::array<double, 3> a{};
@@ -51,14 +39,15 @@ std::array<double, 3> acceleration_at(const scenes::Scene& scene, double time) {
 
 SolverSettings settings_of(const scenes::Scene& scene) {
   const auto& m = scene.material;
+  const scenes::Pieces pieces = scenes::pieces_of(scene);
   SolverSettings s;
   s.dimension = scene.spatial_dimension();
   s.axisymmetric = scene.geometry.dimension == scenes::Dimension::axisymmetric;
   const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
   s.transfer =
       scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
-  // A duct's volume is held by its walls: averaging through the nodes buys nothing there (README).
-  if (scene.kind == scenes::Kind::duct) s.dilatation = Dilatation::cell_average;
+  // Volume that walls hold all around gains nothing by being averaged through the nodes (README).
+  if (!pieces.free_surface) s.dilatation = Dilatation::cell_average;
   if (paper) s.dilatation = Dilatation::centroid;
   if (scene.mpm.b_bar)
     s.dilatation = *scene.mpm.b_bar == scenes::BBar::smooth ? Dilatation::smooth : Dilatation::cell_average;
@@ -71,8 +60,8 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.density = m.density;
   // Yu et al. name FLIP alone, which keeps all of a particle's own velocity.
   s.flip_relaxation_time = paper ? std::numeric_limits<double>::infinity() : scene.mpm.flip_relaxation_time;
-  s.density_correction = density_correction(scene);
-  s.free_surface = scene.kind != scenes::Kind::duct;
+  s.density_correction = density_correction(scene, pieces);
+  s.free_surface = pieces.free_surface;
   s.flow = m.flow_curve().parameters;
   if (!laws::has_yield_stress(m.model)) s.flow.yield_stress = 0.0;
   s.thixotropic = scene.thixotropy.has_value() && laws::has_yield_stress(m.model);
@@ -80,7 +69,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
     s.structure = {scene.thixotropy->flocculation_rate / m.yield_stress,
                    scene.thixotropy->deflocculation_coefficient};
   s.state = {m.bulk_modulus(), m.shear_modulus(), m.equation_of_state_exponent};
-  const SceneWalls walls = walls_of(scene, s.cell);
+  const SceneWalls walls = walls_of(pieces, s.dimension, s.cell);
   s.bounds = walls.bounds;
   s.walls = walls.walls;
   s.threads = scene.mpm.threads;

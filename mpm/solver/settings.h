@@ -12,14 +12,14 @@ SolverSettings settings_of(const scenes::Scene&);
 /// else 1.
 double whole_body_factor(const scenes::Scene&);
 
-/// The axis gravity points down along (the last), and the axis a duct is driven along (the first).
+/// The axis gravity points down along (the last); a force along the flow acts along the first.
 inline int vertical_axis(const scenes::Scene& scene) { return scene.spatial_dimension() - 1; }
 
 /// Uniform acceleration at a time, m/s2 per axis.
 std::array<double, 3> acceleration_at(const scenes::Scene&, double time);
 
-/// The cell size in use. A duct is a whole number of cells high but for round-off, which is taken out here so
-/// that its upper wall lies on a cell face exactly. m
+/// The cell size in use. Where a height is a whole number of cells but for round-off, that is taken out here
+/// so that the upper wall lies on a cell face exactly. m
 double cell_size(const scenes::Scene&);
 
 }  // namespace flowrest::mpm

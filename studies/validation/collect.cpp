@@ -80,9 +80,9 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       Number n;
       n.published = published;
       n.solver = fine.wanted->solver;
-      n.grain = compare::words::grain_of(scene.scene.gauges, scene.scene.kind);
+      n.grain = compare::words::grain_of(scene.scene.gauges, scene.scene.kind());
       n.model = fine.wanted->model;
-      if (published.quantity == "front_mm" && scene.scene.kind == scenes::Kind::l_box)
+      if (published.quantity == "front_mm" && scene.scene.kind() == scenes::Kind::l_box)
         n.wall = 1e3 * scene.scene.l_box().channel_length;
       const Seen* coarse = partner(all, fine, true);
       if (fine.view) {
@@ -199,7 +199,7 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
                                     std::vector<report::Entry>& entries) {
   report::Plot plot{.id = slug(scene.name) + "-" + slug(gauge.key),
                     .title = fmt::format("{}: {} against time", scene.name, gauge.name),
-                    .caption = gauge.caption_for(scene.scene.gauges, scene.scene.kind)};
+                    .caption = gauge.caption_for(scene.scene.gauges, scene.scene.kind())};
   plot.x = {"time", "s", false, true};
   plot.y = {gauge.name, gauge.unit, false, true};
   bool moves = false;
@@ -233,7 +233,7 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
 /// The level section of an L-box, in which the bars leave their streaks.
 std::optional<report::Section> streaks_of(const SceneWanted& scene, const Comparison& comparison,
                                           const std::vector<Seen>& all, std::vector<report::Entry>& entries) {
-  if (scene.scene.kind != scenes::Kind::l_box || !scene.scene.thixotropy) return std::nullopt;
+  if (scene.scene.kind() != scenes::Kind::l_box || !scene.scene.thixotropy) return std::nullopt;
   for (report::Section& section : compare::fields::sections_of(comparison, section_times, section_bytes)) {
     if (section.id != "level-sections") continue;
     std::erase_if(section.panels, [&](report::Section::Panel& panel) {
@@ -259,9 +259,9 @@ std::vector<report::Block> figures_of(const SceneWanted& scene, const Comparison
   for (const Seen& seen : all)
     if (!seen.wanted->coarse && seen.view && !seen.view->gauge.empty())
       end = std::max(end, seen.view->gauge.end());
-  std::vector<compare::Gauge> gauges = {compare::gauge_of(scene.scene.kind)};
-  for (const compare::Gauge& gauge : compare::further_gauges(scene.scene.kind)) {
-    const bool of_slump = scene.scene.kind == scenes::Kind::slump && gauge.key == "height";
+  std::vector<compare::Gauge> gauges = {compare::gauge_of(scene.scene.kind())};
+  for (const compare::Gauge& gauge : compare::further_gauges(scene.scene.kind())) {
+    const bool of_slump = scene.scene.kind() == scenes::Kind::slump && gauge.key == "height";
     if (!of_slump && gauge.key != "start_height") gauges.push_back(gauge);
   }
   for (const compare::Gauge& gauge : gauges)
@@ -282,7 +282,7 @@ Found found_run(const Folder& folder, const Seen& seen, const compare::Gauge& ga
   found.end = view.measures.end;
   if (view.measures.gauge_end) found.gauge_end = gauge.shown * *view.measures.gauge_end;
   found.arrival = compare::read(view.run, "arrival_s");
-  if (compare::grows_to_rest(seen.wanted->point.scene->kind)) {
+  if (compare::grows_to_rest(seen.wanted->point.scene->kind())) {
     const Series series = compare::column(view.run, found.arrival ? "end_height_mm" : gauge.column,
                                           found.arrival ? 1.0 : 1e3 * gauge.si);
     if (!series.empty())
@@ -333,10 +333,10 @@ std::string command_for(const std::string& scene, const Options& options) {
 
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
                          std::vector<report::Entry>& entries) {
-  const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind);
+  const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind());
   SceneFound scene{.name = wanted.name,
                    .title = wanted.scene.title,
-                   .kind = wanted.scene.kind,
+                   .kind = wanted.scene.kind(),
                    .gauges = wanted.scene.gauges};
   if (scene.kind == scenes::Kind::l_box) scene.length_mm = 1e3 * wanted.scene.l_box().channel_length;
   std::vector<fs::path> directories;

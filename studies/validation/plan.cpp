@@ -17,7 +17,7 @@ std::string version() { return runs::version_in(runs::provenance()); }
 /// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them
 /// across.
 double coarse_cell(const scenes::Scene& scene, double cell, double coarsening) {
-  if (scene.kind != scenes::Kind::duct) return cell * coarsening;
+  if (scene.kind() != scenes::Kind::duct) return cell * coarsening;
   const double height = scene.duct().height;
   return height / std::max(1.0, std::round(height / (cell * coarsening)));
 }

@@ -97,7 +97,7 @@ std::vector<PaperItem> read_paper_items() {
 }
 
 std::vector<Published> exact_numbers(const std::string& name, const scenes::Scene& scene) {
-  if (scene.kind != scenes::Kind::duct || scene.forces.body_force.empty()) return {};
+  if (scene.kind() != scenes::Kind::duct || scene.forces.body_force.empty()) return {};
   const scenes::Material& material = scene.material;
   const double height = scene.duct().height, force = scene.forces.body_force.back().second;
   const bool stepped = scene.forces.body_force.size() > 1;
