@@ -15,10 +15,6 @@ DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::Ru
     : Sampler(scene, std::move(fields), writer, plug_in), height_(duct_cells(scene)) {
   for (std::size_t i = 0; i < height_.size(); ++i)
     height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
-  std::vector<std::string> columns{"time_s", "plug_velocity_m_s", "mean_velocity_m_s"};
-  name_steps(columns);
-  if (thixotropic()) columns.push_back("flocculation_mean");
-  writer.history_columns(columns);
 }
 
 void DuctSampler::sample(double time, const ReadField& read) {
@@ -26,21 +22,31 @@ void DuctSampler::sample(double time, const ReadField& read) {
   std::vector<double> velocity(cells());
   for (std::size_t i = 0; i < cells(); ++i) velocity[i] = field[3 * i];
   const double spacing = scene().duct().height / static_cast<double>(cells());
-  shear_rate_ = 0.0;
-  if (scene().base.law != scenes::Wall::slip)
-    shear_rate_ = std::max(std::abs(velocity.front()), std::abs(velocity.back())) / (0.5 * spacing);
+  const auto state = thixotropic() ? flocculation(time, read) : std::vector<double>(cells(), 0.0);
+  overstressing_rate_ = 0.0;
+  // The rate over a distance, where the lesser flocculated of what it shears is this.
+  const auto shear = [&](double velocity_over, double distance, double lambda) {
+    overstressing_rate_ =
+        std::max(overstressing_rate_, std::abs(velocity_over) / (distance * (1.0 + lambda)));
+  };
+  if (scene().base.law != scenes::Wall::slip) {
+    shear(velocity.front(), 0.5 * spacing, state.front());
+    shear(velocity.back(), 0.5 * spacing, state.back());
+  }
   for (std::size_t i = 1; i < cells(); ++i)
-    shear_rate_ = std::max(shear_rate_, std::abs(velocity[i] - velocity[i - 1]) / spacing);
+    shear(velocity[i] - velocity[i - 1], spacing, std::min(state[i - 1], state[i]));
   const std::size_t middle = cells() / 2;
   plug_velocity_ = cells() < 2 ? velocity.front() : 0.5 * (velocity[middle - 1] + velocity[middle]);
   mean_velocity_ = std::accumulate(velocity.begin(), velocity.end(), 0.0) / static_cast<double>(cells());
   if (history_is_due(time)) {
-    std::vector<double> row{time, plug_velocity_, mean_velocity_};
-    add_steps(time, row);
-    if (thixotropic()) {
-      const auto state = flocculation(time, read);
-      row.push_back(std::accumulate(state.begin(), state.end(), 0.0) / static_cast<double>(cells()));
-    }
+    runs::Row row;
+    row.add(runs::column::time, time)
+        .add(runs::column::plug_velocity, plug_velocity_)
+        .add(runs::column::mean_velocity, mean_velocity_)
+        .add(steps_until(time));
+    if (thixotropic())
+      row.add(runs::column::flocculation,
+              std::accumulate(state.begin(), state.end(), 0.0) / static_cast<double>(cells()));
     writer().history(row);
   }
   if (profile_is_due(time)) writer().profile(time, height_, velocity);

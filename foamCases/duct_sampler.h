@@ -13,18 +13,18 @@ class DuctSampler : public Sampler {
 
   std::size_t cells() const override { return height_.size(); }
   std::string progress() const override;
-  double shear_rate() const override { return shear_rate_; }
   std::string fault() const override { return ""; }
   std::string doubt() const override { return ""; }
   nlohmann::ordered_json summary() const override;
 
  private:
   void sample(double time, const ReadField&) override;
+  double overstressing_rate() const override { return overstressing_rate_; }
 
-  std::vector<double> height_;  ///< m, of the cell centres over the lower plate
-  double plug_velocity_ = 0.0;  ///< m/s, the mean of the innermost two cells
-  double mean_velocity_ = 0.0;  ///< m/s
-  double shear_rate_ = 0.0;     ///< 1/s, the largest, at the plates or between cells
+  std::vector<double> height_;       ///< m, of the cell centres over the lower plate
+  double plug_velocity_ = 0.0;       ///< m/s, the mean of the innermost two cells
+  double mean_velocity_ = 0.0;       ///< m/s
+  double overstressing_rate_ = 0.0;  ///< 1/s, the largest, at the plates or between cells
 };
 
 }  // namespace flowrest::foam

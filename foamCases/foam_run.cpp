@@ -20,7 +20,6 @@
 #include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/ranks.h"
-#include "foamCases/rest_monitor.h"
 #include "foamCases/run_state.h"
 #include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
@@ -32,6 +31,7 @@
 #include "runs/machine.h"
 #include "runs/process.h"
 #include "runs/progress.h"
+#include "runs/rest.h"
 #include "runs/run_folder.h"
 #include "runs/temporary_folder.h"
 #include "scenes/cost.h"
@@ -54,7 +54,7 @@ constexpr double initial_volume_allowed = 1e-3;
 constexpr double collapsed_step = 1e-5;
 constexpr int collapsed_steps = 20;
 
-constexpr const char* shear_rates_header = "time_s,shear_rate_1_s\n";
+constexpr const char* overstresses_header = "time_s,overstress\n";
 
 /// A program and what it is called with.
 struct Call {
@@ -95,7 +95,8 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
 std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
                                       runs::RunWriter& writer, bool plug_in) {
   if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
-  if (scene.kind() == scenes::Kind::duct) return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
+  if (scene.kind() == scenes::Kind::duct)
+    return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
   return std::make_unique<SlumpSampler>(scene, fields, writer, plug_in);
 }
 
@@ -259,15 +260,15 @@ class CaseRun {
   }
 
   void take_up_rest() {
-    const auto& samples = state_->shear_rates;
-    std::string kept = shear_rates_header;
+    const auto& samples = state_->overstresses;
+    std::string kept = overstresses_header;
     for (std::size_t row = 0; row < samples.rows(); ++row) {
       // As while it ran: what came after its rest, while the solver ended, does not count.
       if (!rest_.at_rest()) rest_.add(samples.columns[0][row], samples.columns[1][row]);
       kept += fmt::format("{},{}\n", samples.columns[0][row], samples.columns[1][row]);
-      last_shear_rate_time_ = samples.columns[0][row];
+      last_overstress_time_ = samples.columns[0][row];
     }
-    runs::write_atomically(case_ / shear_rates_file, kept);
+    runs::write_atomically(case_ / overstresses_file, kept);
     if (rest_.at_rest()) status_ = Status::at_rest;
   }
 
@@ -403,15 +404,15 @@ class CaseRun {
 
   /// Takes in the last sample, and keeps it for whoever goes on with the run.
   void follow_rest() {
-    if (!(sampler_->time() > last_shear_rate_time_)) return;
-    last_shear_rate_time_ = sampler_->time();
-    const fs::path path = case_ / shear_rates_file;
+    if (!(sampler_->time() > last_overstress_time_)) return;
+    last_overstress_time_ = sampler_->time();
+    const fs::path path = case_ / overstresses_file;
     std::ofstream file(path, std::ios::app);
-    if (file.tellp() == 0) file << shear_rates_header;
-    file << fmt::format("{},{}\n", sampler_->time(), sampler_->shear_rate()) << std::flush;
+    if (file.tellp() == 0) file << overstresses_header;
+    file << fmt::format("{},{}\n", sampler_->time(), sampler_->overstress()) << std::flush;
     if (!file) throw runs::RunError(fmt::format("{}: cannot be written", path.string()));
     if (status_ != Status::running) return;
-    rest_.add(sampler_->time(), sampler_->shear_rate());
+    rest_.add(sampler_->time(), sampler_->overstress());
     if (rest_.at_rest()) status_ = Status::at_rest;
   }
 
@@ -502,7 +503,7 @@ class CaseRun {
   runs::RunWriter writer_;
   fs::path case_;
   std::optional<fs::path> plug_in_;
-  RestMonitor rest_;
+  runs::Rest rest_;
   runs::Progress progress_;
   std::unique_ptr<Sampler> sampler_;
   SolverLog log_{solved_components(scene_)};
@@ -514,7 +515,7 @@ class CaseRun {
   std::size_t steps_ = 0;
   SolverStep last_step_;
   double time_step_before_ = 0.0;      ///< s, of the step before that
-  double last_shear_rate_time_ = 0.0;  ///< s
+  double last_overstress_time_ = 0.0;  ///< s
   double max_courant_ = 0.0;
   double max_time_step_ = 0.0;
   int small_steps_ = 0;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "foamCases/concrete_rates.h"
 #include "runs/depth.h"
+#include "runs/rest.h"
 
 namespace flowrest::foam {
 
@@ -177,7 +179,8 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
   SlumpGauges gauges;
   runs::RadialDepthAccumulator rings(grid.width, grid.side * grid.width);
   const auto rate = shear_rate(grid, fields.velocity, slip);
-  std::vector<std::pair<double, double>> inside, at_base;
+  ConcreteRates inside;
+  std::vector<std::pair<double, double>> at_base;
   for_each_cell(grid, [&](const std::array<int, 3>& cell) {
     const auto [i, j, row] = cell;
     const auto index = grid.index(i, j, row);
@@ -187,7 +190,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
     gauges.kinetic_energy += 0.5 * density * concrete * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     if (concrete > 0.0) rings.add(std::hypot(grid.centre(i), grid.centre(j)), concrete);
     if (fields.fraction[index] < nearly_full) return;
-    inside.emplace_back(rate[index], concrete);
+    inside.add(rate[index], concrete, fields.flocculation, index);
     if (row == 0) at_base.emplace_back(std::hypot(u[0], u[1]) / (0.5 * grid.row_height(0)), 1.0);
   });
   const auto depth = rings.depth();
@@ -203,8 +206,9 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
   }
   gauges.trapped_air = trapped_air(grid, fields.fraction);
   gauges.front = front(grid, fields.fraction);
-  gauges.shear_rate_p99 = percentile_99(std::move(inside));
-  gauges.base_shear_rate_p99 = slip ? 0.0 : percentile_99(std::move(at_base));
+  gauges.shear_rate_p99 = inside.percentile();
+  gauges.overstressing_rate_p99 = inside.overstressing_percentile();
+  gauges.base_shear_rate_p99 = slip ? 0.0 : runs::percentile_99(std::move(at_base));
   return gauges;
 }
 

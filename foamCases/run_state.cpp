@@ -149,7 +149,7 @@ RunState take_up(const fs::path& directory, const EarlierRun& earlier, const Sta
                                     times_until(directory / "history.csv", from.time));
   state.last_profile = last_regular_row(earlier.scene, output.profile_interval,
                                         times_until(directory / "profiles.csv", from.time));
-  state.shear_rates = rows_until(case_directory / shear_rates_file, from.time);
+  state.overstresses = rows_until(case_directory / overstresses_file, from.time);
   double solved = 0.0;
   for (const auto& path : earlier_logs(case_directory)) {
     SolverLog log(solved_components(earlier.scene));

@@ -35,13 +35,13 @@ struct RunState {
   double last_row = 0.0;          ///< s, of the history's rows that stay
   double last_profile = 0.0;      ///< s
   std::vector<SolverStep> steps;  ///< up to then
-  runs::Table shear_rates;        ///< of the samples up to then, where it was kept: time_s, shear_rate_1_s
+  runs::Table overstresses;       ///< of the samples up to then, where it was kept: time_s, overstress
   std::map<std::string, double> cpu_by_program;
   double wall = 0.0;
 };
 
 /// What a case keeps of its samples for whoever goes on with it.
-inline constexpr const char* shear_rates_file = "shearRates.csv";
+inline constexpr const char* overstresses_file = "overstresses.csv";
 
 /// The run in a folder, with `set` laid over its settings: time.end, time.stop_at_rest=false.
 /// @throws runs::RunError where the folder holds no run of this solver, or one that is finished and not

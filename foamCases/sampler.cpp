@@ -33,6 +33,7 @@ double last_regular_row(const scenes::Scene& scene, double interval, const std::
 
 Sampler::Sampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
     : scene_(scene),
+      rest_(scene),
       fields_(std::move(fields)),
       writer_(writer),
       plug_in_(plug_in),
@@ -55,17 +56,12 @@ SolverStep Sampler::since_last_row(double time) {
   return all;
 }
 
-void Sampler::name_steps(std::vector<std::string>& columns) const {
-  columns.emplace_back("initial_residual_U");
-  if (plug_in_) columns.emplace_back("velocity_chatter");
-  columns.insert(columns.end(), {"courant_max", "time_step_s"});
-}
-
-void Sampler::add_steps(double time, std::vector<double>& row) {
+runs::Row Sampler::steps_until(double time) {
   const SolverStep steps = since_last_row(time);
-  row.push_back(steps.initial_residual_u);
-  if (plug_in_) row.push_back(steps.chatter.value_or(0.0));
-  row.insert(row.end(), {steps.courant, steps.time_step});
+  runs::Row row;
+  row.add(runs::column::residual, steps.initial_residual_u);
+  if (plug_in_) row.add(runs::column::chatter, steps.chatter.value_or(0.0));
+  return row.add(runs::column::courant, steps.courant).add(runs::column::time_step, steps.time_step);
 }
 
 void Sampler::sample_before(double complete_before, const std::function<void()>& after_each) {

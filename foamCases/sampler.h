@@ -11,6 +11,8 @@
 
 #include "foamCases/case_fields.h"
 #include "foamCases/solver_log.h"
+#include "runs/columns.h"
+#include "runs/rest.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
@@ -59,9 +61,9 @@ class Sampler {
   virtual std::size_t cells() const = 0;
   /// The state in a few words, for progress.
   virtual std::string progress() const = 0;
-  /// The largest shear rate at the base or inside, 1/s, of the last sample: what still moves the concrete;
-  /// `runs::nothing` where no cell is full enough to tell, which is no rest.
-  virtual double shear_rate() const = 0;
+  /// The overstress that governs rest (runs/rest.h), of the last sample; `runs::nothing` where no cell is
+  /// full enough to tell, which is no rest.
+  double overstress() const { return rest_.overstress(overstressing_rate()); }
   /// Why the run can give no answer any more; empty where it can.
   virtual std::string fault() const = 0;
   /// Why the answer is in doubt for what was sampled; empty where it is not.
@@ -74,14 +76,16 @@ class Sampler {
   Sampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   virtual void sample(double time, const ReadField&) = 0;
+  /// 1/s, of the last sample: the 99th percentile, by volume of concrete, of the shear rate over 1 +
+  /// flocculation; `runs::nothing` where no cell is full enough to tell.
+  virtual double overstressing_rate() const = 0;
 
   const scenes::Scene& scene() const { return scene_; }
   runs::RunWriter& writer() { return writer_; }
   bool plug_in() const { return plug_in_; }
   /// What a row says of the steps since the last: the largest residual, chatter and Courant number, and the
   /// last step.
-  void name_steps(std::vector<std::string>& columns) const;
-  void add_steps(double time, std::vector<double>& row);
+  runs::Row steps_until(double time);
   /// Whether rows tell of flocculation.
   bool thixotropic() const;
   /// The field of the flocculation, as it is at the start while the solver has not written it yet.
@@ -94,6 +98,7 @@ class Sampler {
   bool is_at_end(double time) const;
 
   const scenes::Scene& scene_;
+  runs::Rest rest_;
   CaseFields fields_;
   runs::RunWriter& writer_;
   bool plug_in_;

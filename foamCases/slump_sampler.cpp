@@ -14,20 +14,14 @@ SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::
                            bool plug_in)
     : Sampler(scene, std::move(fields), writer, plug_in),
       mesh_(slump_mesh(scene)),
-      conservation_(scene, scene.slump().volume()) {
-  std::vector<std::string> columns{
-      "time_s",    "spread_mm", "spread_1p5_mm",    "spread_6_mm",        "front_mm",
-      "height_mm", "volume_m3", "kinetic_energy_J", "shear_rate_p99_1_s", "base_shear_rate_p99_1_s"};
-  name_steps(columns);
-  columns.insert(columns.end(), {"trapped_air_m3", "volume_error"});
-  if (thixotropic()) columns.push_back("flocculation_mean");
-  writer.history_columns(columns);
-}
+      conservation_(scene, scene.slump().volume()) {}
 
 void SlumpSampler::sample(double time, const ReadField& read) {
-  const SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
-  if (thixotropic())
-    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, flocculation(time, read));
+  SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
+  if (thixotropic()) {
+    fields.flocculation = flocculation(time, read);
+    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, fields.flocculation);
+  }
   const auto gauges = mesh_->gauge(fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   conservation_.add(time, gauges.volume, gauges.kinetic_energy);
   state_.time = time;
@@ -36,8 +30,7 @@ void SlumpSampler::sample(double time, const ReadField& read) {
   state_.front = gauges.front;
   state_.height = runs::centre_depth(gauges.radius, gauges.depth, spread_depth);
   state_.rim_depth = gauges.rim_depth;
-  state_.shear_rate = gauges.shear_rate_p99;
-  state_.base_shear_rate = gauges.base_shear_rate_p99;
+  state_.overstressing_rate = gauges.overstressing_rate_p99;
   state_.trapped_air = gauges.trapped_air;
   state_.most_trapped_air = std::max(state_.most_trapped_air, gauges.trapped_air);
   if (history_is_due(time)) write_history(time, gauges);
@@ -45,22 +38,20 @@ void SlumpSampler::sample(double time, const ReadField& read) {
 }
 
 void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
-  const auto spread_mm = [&](double times) {
-    return 1e3 * runs::spread(gauges.radius, gauges.depth, times * scene().gauges.spread_depth);
-  };
-  std::vector<double> row{time,
-                          1e3 * state_.spread,
-                          spread_mm(0.5),
-                          spread_mm(2.0),
-                          1e3 * gauges.front,
-                          1e3 * state_.height,
-                          gauges.volume,
-                          gauges.kinetic_energy,
-                          gauges.shear_rate_p99,
-                          gauges.base_shear_rate_p99};
-  add_steps(time, row);
-  row.insert(row.end(), {gauges.trapped_air, conservation_.error()});
-  if (thixotropic()) row.push_back(state_.flocculation);
+  using namespace runs::column;
+  runs::Row row;
+  row.add(runs::column::time, time)
+      .add(runs::spread_columns(gauges.radius, gauges.depth, scene().gauges))
+      .add(front, gauges.front)
+      .add(height, state_.height)
+      .add(volume, gauges.volume)
+      .add(kinetic_energy, gauges.kinetic_energy)
+      .add(runs::column::shear_rate, gauges.shear_rate_p99)
+      .add(base_shear_rate, gauges.base_shear_rate_p99)
+      .add(steps_until(time))
+      .add(trapped_air, gauges.trapped_air)
+      .add(volume_error, conservation_.error());
+  if (thixotropic()) row.add(runs::column::flocculation, state_.flocculation);
   writer().history(row);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <memory>
 
 #include "foamCases/conservation.h"
@@ -11,16 +10,15 @@ namespace flowrest::foam {
 
 /// The state of a slump when it was last sampled. What had nothing to read is `runs::nothing`.
 struct SlumpState {
-  double time = 0.0;              ///< s
-  double spread = 0.0;            ///< m, at gauges.spread_depth
-  double front = 0.0;             ///< m
-  double height = 0.0;            ///< m, centre depth
-  double rim_depth = 0.0;         ///< m
-  double shear_rate = 0.0;        ///< 1/s, 99th percentile inside
-  double base_shear_rate = 0.0;   ///< 1/s, 99th percentile at the base
-  double trapped_air = 0.0;       ///< m3
-  double most_trapped_air = 0.0;  ///< m3, so far
-  double flocculation = 0.0;      ///< mean over the concrete
+  double time = 0.0;                ///< s
+  double spread = 0.0;              ///< m, at gauges.spread_depth
+  double front = 0.0;               ///< m
+  double height = 0.0;              ///< m, centre depth
+  double rim_depth = 0.0;           ///< m
+  double overstressing_rate = 0.0;  ///< 1/s
+  double trapped_air = 0.0;         ///< m3
+  double most_trapped_air = 0.0;    ///< m3, so far
+  double flocculation = 0.0;        ///< mean over the concrete
 };
 
 /// Gauges a slump, in a wedge or a quarter.
@@ -30,11 +28,6 @@ class SlumpSampler : public Sampler {
 
   std::size_t cells() const override { return mesh_->cells(); }
   std::string progress() const override;
-  double shear_rate() const override {
-    // A base that slips shears nothing, whatever moves upon it.
-    const bool slips = scene().base.law == scenes::Wall::slip;
-    return slips ? state_.shear_rate : std::fmax(state_.shear_rate, state_.base_shear_rate);
-  }
   std::string fault() const override;
   std::string doubt() const override { return conservation_.doubt(); }
   void continue_from(const runs::Table& history) override;
@@ -42,6 +35,7 @@ class SlumpSampler : public Sampler {
 
  private:
   void sample(double time, const ReadField&) override;
+  double overstressing_rate() const override { return state_.overstressing_rate; }
   void write_history(double time, const SlumpGauges&);
 
   std::unique_ptr<SlumpMesh> mesh_;

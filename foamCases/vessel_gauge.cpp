@@ -4,9 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "foamCases/concrete_rates.h"
 #include "foamCases/vessel_mesh.h"
-#include "foamCases/wedge_gauge.h"
 #include "runs/depth.h"
+#include "runs/rest.h"
 
 namespace flowrest::foam {
 
@@ -55,17 +56,19 @@ double quantile(const Bins& bins, double share) {
 }  // namespace
 
 VesselGauge::VesselGauge(const scenes::Scene& scene)
-    : scene_(scene), cells_(mesh_cells(vessel_mesh(scene))), factor_(whole_over_mesh(scene)) {}
+    : scene_(scene),
+      pieces_(scenes::pieces_of(scene)),
+      cells_(mesh_cells(vessel_mesh(scene))),
+      factor_(whole_over_mesh(scene)) {}
 
-bool VesselGauge::floor_holds() const {
-  return scene_.base.law != scenes::Wall::slip && scene_.kind() != scenes::Kind::v_funnel;
-}
+bool VesselGauge::floor_holds() const { return scene_.base.law != scenes::Wall::slip && !pieces_.runs_out; }
 
 VesselGauges VesselGauge::measure(const VesselFields& fields) const {
   VesselGauges gauges;
   const double density = scene_.material.density;
   const bool held = floor_holds();
-  std::vector<std::pair<double, double>> inside, at_floor;
+  ConcreteRates inside;
+  std::vector<std::pair<double, double>> at_floor;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const MeshCell& cell = cells_[i];
     const double concrete = factor_ * fields.fraction[i] * cell.volume;
@@ -74,43 +77,41 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
     gauges.kinetic_energy += 0.5 * density * concrete * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     gauges.potential_energy += density * scene_.forces.gravity * concrete * cell.centre()[2];
     if (fields.fraction[i] < nearly_full) continue;
-    if (!fields.shear_rate.empty()) inside.emplace_back(fields.shear_rate[i], concrete);
+    if (!fields.shear_rate.empty()) inside.add(fields.shear_rate[i], concrete, fields.flocculation, i);
     const double height = cell.high[2] - cell.low[2];
     if (held && cell.low[2] < 1e-6 * scene_.foam.cell)
       at_floor.emplace_back(std::hypot(u[0], u[1]) / (0.5 * height), cell.volume / height);
   }
-  gauges.shear_rate_p99 = percentile_99(std::move(inside));
-  gauges.base_shear_rate_p99 = held ? percentile_99(std::move(at_floor)) : 0.0;
-  if (scene_.kind() == scenes::Kind::v_funnel) {
-    measure_funnel(fields, gauges);
-  } else {
-    measure_channel(fields, gauges);
-  }
+  gauges.shear_rate_p99 = inside.percentile();
+  gauges.overstressing_rate_p99 = inside.overstressing_percentile();
+  gauges.base_shear_rate_p99 = held ? runs::percentile_99(std::move(at_floor)) : 0.0;
+  if (const auto* outlet = std::get_if<scenes::OutletGauge>(&pieces_.gauged))
+    measure_outlet(fields, *outlet, gauges);
+  else
+    measure_channel(fields, std::get<scenes::ChannelGauge>(pieces_.gauged), gauges);
   return gauges;
 }
 
-void VesselGauge::measure_channel(const VesselFields& fields, VesselGauges& gauges) const {
-  const bool box = scene_.kind() == scenes::Kind::l_box;
-  const double length = box ? scene_.l_box().length() : scene_.dam_break().tank_length;
-  const double begin = box ? scene_.l_box().reservoir_length : 0.0;
-  const double width = box ? scene_.l_box().width : 1.0;  // of a plane a metre
-  Bins volume(length, scene_.foam.cell);
+void VesselGauge::measure_channel(const VesselFields& fields, const scenes::ChannelGauge& channel,
+                                  VesselGauges& gauges) const {
+  Bins volume(channel.length, scene_.foam.cell);
   for (std::size_t i = 0; i < cells_.size(); ++i)
     volume.add(cells_[i].low[0], cells_[i].high[0], factor_ * fields.fraction[i] * cells_[i].volume);
   gauges.place = volume.centres();
   gauges.depth = volume.value;
-  for (double& depth : gauges.depth) depth /= volume.width * width;
-  gauges.front = runs::front(gauges.place, gauges.depth, length, scene_.gauges.front_depth) - begin;
-  gauges.front_mass_995 = quantile(volume, 0.995) - begin;
+  for (double& depth : gauges.depth) depth /= volume.width * channel.width;
+  gauges.front =
+      runs::front(gauges.place, gauges.depth, channel.length, scene_.gauges.front_depth) - channel.begin;
+  gauges.front_mass_995 = quantile(volume, 0.995) - channel.begin;
   const double over = scene_.gauges.end_length;
   gauges.end_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::last, over);
   gauges.start_height = runs::depth_at_end(gauges.depth, volume.width, runs::ChannelEnd::first, over);
 }
 
-void VesselGauge::measure_funnel(const VesselFields& fields, VesselGauges& gauges) const {
-  const auto& g = scene_.v_funnel();
-  const double side = 0.5 * g.outlet_width, deep = 0.5 * g.depth;
-  Bins volume(0.5 * g.top_width, scene_.foam.cell);
+void VesselGauge::measure_outlet(const VesselFields& fields, const scenes::OutletGauge& outlet,
+                                 VesselGauges& gauges) const {
+  const double side = outlet.half_width, deep = outlet.half_depth;
+  Bins volume(outlet.half_top, scene_.foam.cell);
   const Bins lines_across(side, scene_.foam.cell), lines_deep(deep, scene_.foam.cell);
   std::vector<Bins> sight(lines_deep.value.size(), lines_across);
   const double line_area = lines_across.width * lines_deep.width;

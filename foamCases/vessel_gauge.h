@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "foamCases/block_mesh.h"
+#include "scenes/pieces.h"
 #include "scenes/scene.h"
 
 /// What is measured of the fields in a vessel, by the definitions that all runs share (runs/depth.h), of the
@@ -12,8 +13,9 @@ namespace flowrest::foam {
 /// Fields at one time, a value to a cell.
 struct VesselFields {
   std::vector<double> fraction;
-  std::vector<double> velocity;    ///< x, y, z of each cell, m/s
-  std::vector<double> shear_rate;  ///< 1/s; empty where nobody computes it
+  std::vector<double> velocity;      ///< x, y, z of each cell, m/s
+  std::vector<double> shear_rate;    ///< 1/s; empty where nobody computes it
+  std::vector<double> flocculation;  ///< empty where nothing flocculates
 };
 
 /// What has nothing to read is `runs::nothing`.
@@ -23,6 +25,8 @@ struct VesselGauges {
   double kinetic_energy = 0.0;       ///< J, of the concrete alone
   double potential_energy = 0.0;     ///< J, over the floor or the outlet
   double shear_rate_p99 = 0.0;       ///< 1/s, by volume over cells at least 90 % full
+  /// 1/s, the same of the shear rate over 1 + flocculation: what overstresses the material.
+  double overstressing_rate_p99 = 0.0;
   double base_shear_rate_p99 =
       0.0;             ///< 1/s, velocity along the floor over half a cell, of cells at least 90 % full
   double front = 0.0;  ///< m, from the gate or the tank's corner
@@ -47,10 +51,11 @@ class VesselGauge {
   double mean_over_concrete(const std::vector<double>& fraction, const std::vector<double>& field) const;
 
  private:
-  void measure_channel(const VesselFields&, VesselGauges&) const;
-  void measure_funnel(const VesselFields&, VesselGauges&) const;
+  void measure_channel(const VesselFields&, const scenes::ChannelGauge&, VesselGauges&) const;
+  void measure_outlet(const VesselFields&, const scenes::OutletGauge&, VesselGauges&) const;
 
   const scenes::Scene& scene_;
+  scenes::Pieces pieces_;
   std::vector<MeshCell> cells_;
   double factor_;  ///< whole body over what the mesh holds
 };

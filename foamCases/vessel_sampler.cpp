@@ -14,27 +14,15 @@ VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs
                              bool plug_in)
     : Sampler(scene, std::move(fields), writer, plug_in),
       gauge_(scene),
-      conservation_(scene, initial_volume(scene)) {
-  std::vector<std::string> columns{"time_s"};
-  const auto add = [&](std::initializer_list<std::string> more) { columns.insert(columns.end(), more); };
-  if (is_funnel()) {
-    add({"discharged_fraction", "thinnest_sight_mm"});
-  } else {
-    add({"front_mm", "front_mass_995_mm", "end_height_mm", "start_height_mm"});
-  }
-  add({"volume_m3", "kinetic_energy_J", "potential_energy_J"});
-  if (plug_in) add({"shear_rate_p99_1_s"});
-  add({"base_shear_rate_p99_1_s"});
-  name_steps(columns);
-  add({"volume_error"});
-  if (thixotropic()) add({"flocculation_mean"});
-  writer.history_columns(columns);
-}
+      conservation_(scene, initial_volume(scene)) {}
 
 void VesselSampler::sample(double time, const ReadField& read) {
-  VesselFields fields{read("alpha.concrete", 1), read("U", 3), {}};
+  VesselFields fields{read("alpha.concrete", 1), read("U", 3), {}, {}};
   if (plug_in() && time > 0.0) fields.shear_rate = read("shearRate", 1);
-  if (thixotropic()) flocculation_ = gauge_.mean_over_concrete(fields.fraction, flocculation(time, read));
+  if (thixotropic()) {
+    fields.flocculation = flocculation(time, read);
+    flocculation_ = gauge_.mean_over_concrete(fields.fraction, fields.flocculation);
+  }
   now_ = gauge_.measure(fields);
   conservation_.add(time, now_.volume, now_.kinetic_energy);
   if (history_is_due(time)) write_history(time);
@@ -43,25 +31,26 @@ void VesselSampler::sample(double time, const ReadField& read) {
 
 double VesselSampler::discharged() const { return 1.0 - now_.over_outlet / conservation_.first_volume(); }
 
-double VesselSampler::shear_rate() const {
-  return gauge_.floor_holds() ? std::fmax(now_.shear_rate_p99, now_.base_shear_rate_p99)
-                              : now_.shear_rate_p99;
-}
-
 void VesselSampler::write_history(double time) {
-  std::vector<double> row{time};
-  const auto add = [&](std::initializer_list<double> more) { row.insert(row.end(), more); };
+  using namespace runs::column;
+  runs::Row row;
+  row.add(runs::column::time, time);
   if (is_funnel()) {
-    add({discharged(), 1e3 * now_.thinnest_over_outlet});
+    row.add(runs::column::discharged, discharged()).add(thinnest_sight, now_.thinnest_over_outlet);
   } else {
-    add({1e3 * now_.front, 1e3 * now_.front_mass_995, 1e3 * now_.end_height, 1e3 * now_.start_height});
+    row.add(front, now_.front)
+        .add(front_of_mass, now_.front_mass_995)
+        .add(end_height, now_.end_height)
+        .add(start_height, now_.start_height);
   }
-  add({now_.volume, now_.kinetic_energy, now_.potential_energy});
-  if (plug_in()) add({now_.shear_rate_p99});
-  add({now_.base_shear_rate_p99});
-  add_steps(time, row);
-  add({conservation_.error()});
-  if (thixotropic()) add({flocculation_});
+  row.add(volume, now_.volume)
+      .add(kinetic_energy, now_.kinetic_energy)
+      .add(potential_energy, now_.potential_energy);
+  if (plug_in()) row.add(shear_rate, now_.shear_rate_p99);
+  row.add(base_shear_rate, now_.base_shear_rate_p99)
+      .add(steps_until(time))
+      .add(volume_error, conservation_.error());
+  if (thixotropic()) row.add(runs::column::flocculation, flocculation_);
   writer().history(row);
 }
 

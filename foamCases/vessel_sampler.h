@@ -14,7 +14,6 @@ class VesselSampler : public Sampler {
 
   std::size_t cells() const override { return gauge_.cells(); }
   std::string progress() const override;
-  double shear_rate() const override;
   std::string fault() const override { return conservation_.fault(); }
   std::string doubt() const override { return conservation_.doubt(); }
   void continue_from(const runs::Table& history) override;
@@ -23,6 +22,7 @@ class VesselSampler : public Sampler {
  private:
   bool is_funnel() const { return scene().kind() == scenes::Kind::v_funnel; }
   void sample(double time, const ReadField&) override;
+  double overstressing_rate() const override { return now_.overstressing_rate_p99; }
   void write_history(double time);
   double discharged() const;  ///< share of the concrete
 

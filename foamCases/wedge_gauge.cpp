@@ -5,6 +5,9 @@
 #include <numeric>
 #include <utility>
 
+#include "foamCases/concrete_rates.h"
+#include "runs/rest.h"
+
 namespace flowrest::foam {
 
 namespace {
@@ -70,16 +73,18 @@ double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction
   return runs::nothing;
 }
 
-double concrete_shear_rate(const WedgeGrid& grid, const SlumpFields& fields, bool slip) {
+void gauge_shear_rates(const WedgeGrid& grid, const SlumpFields& fields, bool slip, SlumpGauges& gauges) {
   const auto rate = shear_rate(grid, fields.velocity, slip);
-  std::vector<std::pair<double, double>> in_concrete;
+  ConcreteRates in_concrete;
   for (int row = 0; row < grid.rows(); ++row)
     for (int ring = 0; ring < grid.rings; ++ring) {
       const auto cell = grid.index(ring, row);
       if (fields.fraction[cell] >= nearly_full)
-        in_concrete.emplace_back(rate[cell], fields.fraction[cell] * grid.cell_volume(ring, row));
+        in_concrete.add(rate[cell], fields.fraction[cell] * grid.cell_volume(ring, row), fields.flocculation,
+                        cell);
     }
-  return percentile_99(std::move(in_concrete));
+  gauges.shear_rate_p99 = in_concrete.percentile();
+  gauges.overstressing_rate_p99 = in_concrete.overstressing_percentile();
 }
 
 /// Velocity over the base by the half cell that lies between: the rate that the wall's stress answers to.
@@ -91,22 +96,10 @@ double base_shear_rate(const WedgeGrid& grid, const SlumpFields& fields) {
       under_concrete.emplace_back(std::abs(fields.velocity[3 * cell]) / (0.5 * grid.row_height(0)),
                                   grid.ring_area(ring));
   }
-  return percentile_99(std::move(under_concrete));
+  return runs::percentile_99(std::move(under_concrete));
 }
 
 }  // namespace
-
-double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
-  std::sort(value_and_weight.begin(), value_and_weight.end());
-  double total = 0.0;
-  for (const auto& [value, weight] : value_and_weight) total += weight;
-  double below = 0.0;
-  for (const auto& [value, weight] : value_and_weight) {
-    below += weight;
-    if (below >= 0.99 * total) return value;
-  }
-  return runs::nothing;
-}
 
 std::vector<double> shear_rate(const WedgeGrid& grid, const std::vector<double>& velocity, bool slip) {
   const Component radial(grid, velocity, 0);
@@ -147,7 +140,7 @@ SlumpGauges gauge_slump(const WedgeGrid& grid, const SlumpFields& fields, double
   }
   gauges.rim_depth = gauges.depth.back();
   gauges.front = front_diameter(grid, fields.fraction);
-  gauges.shear_rate_p99 = concrete_shear_rate(grid, fields, slip);
+  gauge_shear_rates(grid, fields, slip, gauges);
   gauges.base_shear_rate_p99 = slip ? 0.0 : base_shear_rate(grid, fields);
   return gauges;
 }

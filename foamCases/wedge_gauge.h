@@ -9,10 +9,12 @@
 /// What is measured of a slump's fields on the wedge grid, scaled to the full circle.
 namespace flowrest::foam {
 
-/// Fields at one time, a value to a cell; the velocity is x (radial), y, z (upwards).
+/// Fields at one time, a value to a cell; the velocity is x (radial), y, z (upwards). The flocculation is
+/// empty where nothing flocculates.
 struct SlumpFields {
   std::vector<double> fraction;
   std::vector<double> velocity;
+  std::vector<double> flocculation = {};
 };
 
 /// What has nothing to read is `runs::nothing`.
@@ -23,6 +25,8 @@ struct SlumpGauges {
   double kinetic_energy = 0.0;            ///< J, of the concrete alone
   double shear_rate_p99 = runs::nothing;  ///< 1/s, the 99th percentile by volume over cells at least 90 %
                                           ///< full; nothing without any
+  /// 1/s, the same of the shear rate over 1 + flocculation: what overstresses the material.
+  double overstressing_rate_p99 = runs::nothing;
   double base_shear_rate_p99 =
       runs::nothing;  ///< 1/s, at the base, the same by area under cells at least 90 % full; 0 where it slips
   double front =
@@ -37,9 +41,6 @@ SlumpGauges gauge_slump(const WedgeGrid&, const SlumpFields&, double density, bo
 /// Mean of a cell field over the concrete, by its volume.
 double mean_over_concrete(const WedgeGrid&, const std::vector<double>& fraction,
                           const std::vector<double>& field);
-
-/// The value below which 99 % of the weight lies; nothing without any.
-double percentile_99(std::vector<std::pair<double, double>> value_and_weight);
 
 /// Shear rate sqrt(2 D:D) in every cell, with faces interpolated linearly as the case's schemes do. 1/s
 std::vector<double> shear_rate(const WedgeGrid&, const std::vector<double>& velocity, bool slip);

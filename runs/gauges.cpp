@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runs/depth.h"
+
 namespace flowrest::runs {
 
 using Json = nlohmann::ordered_json;
@@ -21,31 +23,50 @@ Gauges gauges_of(const Run& run) {
   return gauges;
 }
 
-Json gauge_definitions(const scenes::Scene& scene) {
-  const Gauges& gauges = scene.gauges;
-  Json columns = Json::object();
-  switch (scene.kind()) {
-    case scenes::Kind::slump:
-      columns["spread_mm"] = {{"depth_m", gauges.spread_depth}};
-      columns["spread_1p5_mm"] = {{"depth_m", 0.5 * gauges.spread_depth}};
-      columns["spread_6_mm"] = {{"depth_m", 2.0 * gauges.spread_depth}};
-      break;
-    case scenes::Kind::l_box:
-    case scenes::Kind::dam_break:
-      columns["front_mm"] = {{"depth_m", gauges.front_depth}};
-      columns["end_height_mm"] = columns["start_height_mm"] = {{"length_m", gauges.end_length}};
-      break;
-    case scenes::Kind::v_funnel:
-      columns["thinnest_sight_mm"] = {{"light_below_m", gauges.light_depth}};
-      break;
-    case scenes::Kind::duct:
-      break;
+namespace {
+
+/// The columns that are an apparatus' own, by what it is judged by.
+std::vector<const Column*> own_columns(scenes::MainGauge gauge) {
+  switch (gauge) {
+    case scenes::MainGauge::spread:
+      return {&column::spread, &column::spread_at_half_depth, &column::spread_at_twice_depth};
+    case scenes::MainGauge::front:
+      return {&column::front, &column::start_height, &column::end_height};
+    case scenes::MainGauge::discharge:
+      return {&column::discharged, &column::thinnest_sight};
+    case scenes::MainGauge::velocity:
+      return {&column::plug_velocity, &column::mean_velocity};
   }
+  return {};
+}
+
+}  // namespace
+
+Json gauge_definitions(const scenes::Scene& scene) {
+  Json columns = Json::object();
+  for (const Column* column : own_columns(scene.main_gauge()))
+    if (column->threshold) columns[column->name] = {{column->read_at, column->threshold(scene.gauges)}};
   return columns;
 }
 
 bool may_read_nothing(const std::string& column) {
-  return (column.ends_with("_mm") && column != "spread_mm") || column.ends_with("shear_rate_p99_1_s");
+  const Column* known = column_named(column);
+  return known && known->may_be_empty;
+}
+
+Row spread_columns(std::span<const double> radius, std::span<const double> depth, const Gauges& gauges) {
+  Row row;
+  for (const Column* column :
+       {&column::spread, &column::spread_at_half_depth, &column::spread_at_twice_depth})
+    row.add(*column, spread(radius, depth, column->threshold(gauges)));
+  return row;
+}
+
+Row end_columns(std::span<const double> depth, double bin_width, const Gauges& gauges) {
+  Row row;
+  row.add(column::end_height, depth_at_end(depth, bin_width, ChannelEnd::last, gauges.end_length));
+  row.add(column::start_height, depth_at_end(depth, bin_width, ChannelEnd::first, gauges.end_length));
+  return row;
 }
 
 std::string millimetres(double metres, double depth) {

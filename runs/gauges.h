@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "runs/columns.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
@@ -18,10 +19,14 @@ scenes::Gauges gauges_of(const Run&);
 /// and `spread_6_mm` are read at half and at twice the depth of `spread_mm`.
 nlohmann::ordered_json gauge_definitions(const scenes::Scene&);
 
-/// Whether a column of history.csv may have nothing to read in a run that is in order: a length that is read
-/// where there is enough material, all but the spread, which every slump has; a shear rate of cells that are
-/// full.
+/// Whether a column of history.csv may have nothing to read in a run that is in order.
 bool may_read_nothing(const std::string& column);
+
+/// The columns of a depth about a middle: the spread at its depth, at half and at twice of it.
+Row spread_columns(std::span<const double> radius, std::span<const double> depth, const scenes::Gauges&);
+
+/// The columns of a channel's ends, of the depth over bins of `bin_width` in m.
+Row end_columns(std::span<const double> depth, double bin_width, const scenes::Gauges&);
 
 /// A length in millimetres, with digits down to a thirtieth of the depth at which edges are read: "543.2 mm".
 std::string millimetres(double metres, double depth);

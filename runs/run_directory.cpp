@@ -226,6 +226,11 @@ void RunWriter::history(std::span<const double> row) {
   history_->append(line);
 }
 
+void RunWriter::history(const Row& row) {
+  history_columns(row.names());
+  history(std::span<const double>(row.values()));
+}
+
 void RunWriter::profile(double time, std::span<const double> coordinate, std::span<const double> value) {
   if (coordinate.size() != value.size())
     throw std::invalid_argument("a profile needs as many values as coordinates");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runs/columns.h"
 #include "runs/csv.h"
 #include "runs/errors.h"
 #include "runs/folder_lock.h"
@@ -70,6 +71,9 @@ class RunWriter {
   void history_columns(const std::vector<std::string>& names);
   /// Appends a row; each time once: a second row of the same time is left out.
   void history(std::span<const double> row);
+
+  /// The same by column: the first row names them.
+  void history(const Row&);
 
   /// Appends one profile, each time once: rows (time, coordinate, value). The columns follow the scene's
   /// kind: slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s; others time_s,x_m,depth_m.

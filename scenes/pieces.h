@@ -85,6 +85,28 @@ struct ProfileAxis {
   bool radial() const { return coordinate == "r_m"; }
 };
 
+/// How far material spreads from the middle: about the vertical axis, or in a plane to either side.
+struct SpreadGauge {
+  bool about_axis = true;
+};
+/// How far material runs along x, from `begin` on, and how deep it stands at either end. m
+struct ChannelGauge {
+  double begin = 0.0, length = 0.0;
+  double width = 1.0;  ///< of the whole channel, in a plane 1
+};
+/// What runs out through a rectangular outlet at height 0, about the vertical axis. m
+struct OutletGauge {
+  double half_width = 0.0, half_depth = 0.0;
+  double half_top = 0.0;  ///< of the width of what stands over it
+  double quarters = 1.0;  ///< of it that are computed
+};
+/// How fast material flows between two plates. m
+struct PlatesGauge {
+  double height = 0.0;
+};
+/// What a run is judged by, one alternative for each MainGauge.
+using Gauged = std::variant<SpreadGauge, ChannelGauge, OutletGauge, PlatesGauge>;
+
 struct Pieces {
   std::vector<Body> bodies;
   std::vector<WallPiece> walls;
@@ -98,6 +120,7 @@ struct Pieces {
   /// m: the narrowest passage that walls leave; infinite where material is open to one side.
   double passage = std::numeric_limits<double>::infinity();
   std::optional<Domain> domain;
+  Gauged gauged;
   ProfileAxis profile;
 };
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include "mpm/gauges/gauges.h"
 #include "mpm/output/checkpoint.h"
-#include "mpm/output/gauges.h"
 #include "mpm/output/noise.h"
 #include "mpm/output/snapshot.h"
 #include "mpm/plain/solver.h"
@@ -34,9 +34,6 @@ namespace flowrest::mpm {
 
 namespace {
 
-/// The growth of the spread still to come is at most D eps / 5, eps the overstress: from D ~ tau0^(-1/5) (Yu
-/// et al. 2026, Eq. 51), every part still yielding at most eps above its yield stress.
-constexpr double growth_per_overstress = 0.2;
 /// More energy made by the discretisation than this share of the energy scale is an instability.
 constexpr double energy_made_allowed = 0.05;
 /// Time over which APIC's transfer acts once in scenes with walls of any shape, s. A duct between such walls,
@@ -76,9 +73,10 @@ class MpmRun {
         pieces_(scenes::pieces_of(scene)),
         options_(options),
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
-        gauges_(scene_),
+        gauges_(scene_, pieces_),
+        rest_(scene_),
         noise_(settings_.dimension, settings_.cell),
-        factor_(whole_body_factor(scene)),
+        factor_(pieces_.whole_over_computed),
         // Before anything is written: seeding may need a program that is missing.
         solver_(checkpoint ? make(checkpoint->solver) : make(seeds_of(scene))),
         writer_(open()),
@@ -97,7 +95,6 @@ class MpmRun {
   RunResult run() {
     try {
       describe();
-      writer_.history_columns(gauges_.columns());
       return loop();
     } catch (const std::exception&) {
       const runs::Failure failure = runs::failure_at_hand(scenes::mpm_cost(scene_).memory);
@@ -115,6 +112,7 @@ class MpmRun {
   void take_up(const Checkpoint& checkpoint) {
     state_ = checkpoint.run;
     noise_.restore(checkpoint.noise_meter);
+    if (state_.calm_since >= 0.0) rest_.restore(state_.time, state_.calm_since);
     cpu_begin_ -= state_.cpu;
     wall_begin_ -= state_.wall;
     stages_before_ = state_.stages;
@@ -141,7 +139,9 @@ class MpmRun {
     } else {
       measure();
       // What came to rest in the row that it is gone on from goes no further.
-      const bool rests = state_.steps > 0.0 && state_.time == last_row() && at_rest();
+      const bool at_row = state_.steps > 0.0 && state_.time == last_row();
+      if (at_row) rest_.add(state_.time, measures_.overstress_p99);
+      const bool rests = at_row && rest_.at_rest();
       if (rests || state_.time >= end_) checkpoint();  // under the settings that it has now
       if (rests) return stop(runs::Status::at_rest, "");
     }
@@ -153,7 +153,7 @@ class MpmRun {
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= end_) {
         gauge();
         output();
-        if (at_rest()) return stop(runs::Status::at_rest, "");
+        if (rest_.at_rest()) return stop(runs::Status::at_rest, "");
       }
     }
     return stop(runs::Status::end_time, "");
@@ -246,7 +246,7 @@ class MpmRun {
                       -measures_.energies.numerical, scale));
     if (!pieces_.domain) return;
     const scenes::Domain& domain = *pieces_.domain;
-    if (measures_.farthest > domain.radius)
+    if (measures_.body.farthest > domain.radius)
       throw runs::NumericsError(fmt::format(
           "the material has reached geometry.domain_radius = {} m at {:.4g} s: enlarge the domain",
           domain.radius, state_.time));
@@ -259,7 +259,7 @@ class MpmRun {
     writer_.history(gauges_.row(state_.time, state_.step, measures_));
     while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
     if (due(state_.profiles, scene_.output.profile_interval)) {
-      writer_.profile(state_.time, measures_.coordinate, measures_.value);
+      writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);
       state_.last_profile = state_.time;
       while (due(state_.profiles, scene_.output.profile_interval)) state_.profiles += 1.0;
     }
@@ -268,11 +268,12 @@ class MpmRun {
       state_.last_snapshot = state_.time;
       while (due(state_.snapshots, scene_.output.snapshot_interval)) state_.snapshots += 1.0;
     }
-    follow_rest();
+    rest_.add(state_.time, measures_.overstress_p99);
     noise_.begin();
     keep_checkpoint();
-    std::string progress = fmt::format("t = {:.2f} s, {}", state_.time, gauges_.headline(measures_));
-    if (can_rest()) progress += fmt::format(", growth to come {:.2g} %", 100.0 * growth_to_come());
+    std::string progress = fmt::format("t = {:.2f} s, {}", state_.time, measures_.body.words);
+    if (const auto growth = rest_.growth_to_come())
+      progress += fmt::format(", growth to come {:.2g} %", 100.0 * *growth);
     progress_.update(state_.time, progress);
   }
 
@@ -282,16 +283,7 @@ class MpmRun {
     const bool is_due = due(state_.checkpoints, scene_.output.checkpoint_interval) && state_.time > 0.0;
     while (due(state_.checkpoints, scene_.output.checkpoint_interval)) state_.checkpoints += 1.0;
     if (!is_shared_with_longer_runs()) return;
-    if (is_due || next_row() > end_ || at_rest()) checkpoint();
-  }
-
-  /// A fluid is never at rest, and nothing bounds the growth of what has no yield stress.
-  bool can_rest() const { return laws::can_rest(settings_.law) && settings_.flow.yield_stress > 0.0; }
-
-  /// Bound on the relative growth of the spread still to come.
-  double growth_to_come() const {
-    return growth_per_overstress * settings_.flow.plastic_viscosity * measures_.shear_rate_p99 /
-           settings_.flow.yield_stress;
+    if (is_due || next_row() > end_ || rest_.at_rest()) checkpoint();
   }
 
   /// m/s2
@@ -301,28 +293,8 @@ class MpmRun {
     return driving;
   }
 
-  /// The bound counts once it has held for twice the time in which the driving force would move the material
-  /// over its own height: at the start nothing yields yet, and that is not rest.
-  double time_to_trust_rest() const {
-    const double driving = driving_acceleration();
-    const double length = scene_.body_height();
-    return driving > 0.0 ? 2.0 * std::sqrt(2.0 * length / driving) : 0.0;
-  }
-
-  void follow_rest() {
-    if (!can_rest() || !(growth_to_come() < scene_.time.rest_bound)) {
-      state_.calm_since = -1.0;
-    } else if (state_.calm_since < 0.0) {
-      state_.calm_since = state_.time;
-    }
-  }
-
-  bool has_come_to_rest() const {
-    return state_.calm_since >= 0.0 && state_.time - state_.calm_since >= time_to_trust_rest();
-  }
-  bool at_rest() const { return scene_.time.stop_at_rest && has_come_to_rest(); }
-
   void checkpoint() {
+    state_.calm_since = rest_.calm_since().value_or(-1.0);
     state_.cpu = runs::cpu_seconds() - cpu_begin_;
     state_.wall = seconds_now() - wall_begin_;
     state_.stages = stage_times();
@@ -358,7 +330,7 @@ class MpmRun {
     const double cpu = runs::cpu_seconds() - cpu_begin_, wall = seconds_now() - wall_begin_;
     const double particle_steps = state_.steps * static_cast<double>(solver_->particle_count());
     info["simulated_s"] = state_.time;
-    info["gauge"] = gauges_.headline_value(measures_);
+    info["gauge"] = measures_.body.main;
     info["steps"] = static_cast<std::int64_t>(state_.steps);
     info["wall_s"] = wall;
     info["cpu_s"] = cpu;
@@ -377,9 +349,11 @@ class MpmRun {
     info["noise"] = {{"within_cells", seen(state_.noise.within_cells, NoiseRecord::within_cells_bound)},
                      {"between_steps", seen(state_.noise.between_steps, NoiseRecord::between_steps_bound)},
                      {"path_allowed_m", NoiseRecord::path_allowed * scene_.body_height()}};
-    info["growth_to_come"] = can_rest() ? nlohmann::ordered_json(growth_to_come()) : nlohmann::ordered_json();
-    info["rest_time_s"] =
-        has_come_to_rest() ? nlohmann::ordered_json(state_.calm_since) : nlohmann::ordered_json();
+    const auto number_of = [](const std::optional<double>& value) {
+      return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+    };
+    info["growth_to_come"] = number_of(rest_.growth_to_come());
+    info["rest_time_s"] = number_of(rest_.rest_time());
   }
 
   /// Speeds below which a particle does not move at all: what it would move in a step is lost when it is
@@ -417,7 +391,7 @@ class MpmRun {
       return "noisy: " + noise;
     if (pieces_.profile.radial()) {
       const double depth =
-          runs::centre_depth(measures_.coordinate, measures_.value, scene_.gauges.spread_depth);
+          runs::centre_depth(measures_.body.coordinate, measures_.body.value, scene_.gauges.spread_depth);
       const double cells = depth / settings_.cell;
       if (cells < cells_over_depth_wanted)
         return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
@@ -432,14 +406,14 @@ class MpmRun {
     if (status == runs::Status::interrupted) {
       if (is_shared_with_longer_runs()) checkpoint();
     } else if (state_.last_profile != state_.time) {
-      writer_.profile(state_.time, measures_.coordinate, measures_.value);
+      writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);
     }
     if (status == runs::Status::at_rest && state_.last_snapshot != state_.time)
       snapshots_.write(state_.time, *solver_);
     summarise();
     writer_.finish(status, reason, verdict());
     print_summary(status);
-    return {status, reason, state_.time, gauges_.headline_value(measures_)};
+    return {status, reason, state_.time, measures_.body.main};
   }
 
   void note_failure(const runs::Failure& failure) {
@@ -453,7 +427,7 @@ class MpmRun {
     const double wall = info["wall_s"], cpu = info["cpu_s"], steps = state_.steps;
     progress_.finish(fmt::format(
         "{} at {:.2f} s, {}; {:.0f} steps/s, {:.3g} particle-steps per CPU s, {:.3g} simulated s per hour",
-        runs::to_string(status), state_.time, gauges_.headline(measures_), steps / wall,
+        runs::to_string(status), state_.time, measures_.body.words, steps / wall,
         info["particle_steps_per_cpu_s"].get<double>(), 3600.0 * state_.time / wall));
     if (options_.quiet) return;
     const StageTimes t = stage_times();
@@ -474,6 +448,7 @@ class MpmRun {
   RunOptions options_;
   SolverSettings settings_;
   Gauges gauges_;
+  runs::Rest rest_;
   NoiseMeter noise_;
   double factor_;
   double end_ = end_of(scene_);  ///< s

@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "mpm/output/checkpoint.h"
-#include "mpm/output/gauges.h"
 #include "mpm/output/test_runs.h"
 #include "mpm/solver/test_bodies.h"
+#include "runs/depth.h"
+#include "runs/gauges.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -156,17 +157,12 @@ TEST_F(MpmRun, TheSpreadIsReadAtTheDepthOfTheScene) {
 }
 
 TEST_F(MpmRun, WhatIsShownOfARunHasDigitsThatSuitTheBody) {
-  const auto shown = [](const scenes::Scene& scene, double size, double deep) {
-    Measures m;
-    for (int i = 0; i < 30; ++i) {
-      m.coordinate.push_back(size * (0.01 * i + 0.005));
-      m.value.push_back(i < 20 ? deep : 0.0);
-    }
-    return Gauges(scene).headline(m);
+  const auto shown = [](const scenes::Scene& scene, double spread) {
+    return runs::shown_length("spread", spread, scene.gauges.spread_depth);
   };
-  EXPECT_EQ(shown(tiny_slump(), 1.0, 0.03), "spread 408.0 mm");
-  EXPECT_EQ(shown(tiny_slump_a_hundredth_as_large(), 0.01, 0.0003), "spread 4.080 mm");
-  EXPECT_EQ(shown(tiny_slump(), 1.0, 0.002), "no spread: nowhere 3 mm deep");
+  EXPECT_EQ(shown(tiny_slump(), 0.408), "spread 408.0 mm");
+  EXPECT_EQ(shown(tiny_slump_a_hundredth_as_large(), 0.00408), "spread 4.080 mm");
+  EXPECT_EQ(shown(tiny_slump(), runs::nothing), "no spread: nowhere 3 mm deep");
 }
 
 TEST_F(MpmRun, ThixotropyAddsItsColumn) {

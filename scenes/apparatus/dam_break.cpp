@@ -36,6 +36,7 @@ Pieces DamBreak::pieces(const Scene& scene) const {
   p.bodies.push_back(box_body(scene, column_length, width, column_height));
   add_tank(scene, {.length = tank_length, .width = width, .height = 2.0 * column_height}, p);
   p.drop = column_height;
+  p.gauged = ChannelGauge{.length = tank_length, .width = scene.spatial_dimension() == 2 ? 1.0 : width};
   p.profile = {ProfileAxis::Of::depth, "x_m"};
   return p;
 }

@@ -70,6 +70,7 @@ Pieces Duct::pieces(const Scene& scene) const {
   p.free_surface = false;
   p.whole_cells_over = height;
   if (scene.base.law != Wall::slip) p.passage = height;
+  p.gauged = PlatesGauge{.height = height};
   p.profile = {ProfileAxis::Of::velocity, "y_m"};
   return p;
 }

@@ -111,6 +111,7 @@ Pieces LBox::pieces(const Scene& scene) const {
                        .gone_at = channel_height / *gate_lift_velocity});
   p.drop = reservoir_height;
   if (scene.base.law != Wall::slip) p.passage = plane ? channel_height : std::min(channel_height, width);
+  p.gauged = ChannelGauge{.begin = reservoir_length, .length = length(), .width = plane ? 1.0 : width};
   p.profile = {ProfileAxis::Of::depth, "x_m"};
   return p;
 }

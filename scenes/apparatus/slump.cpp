@@ -160,7 +160,8 @@ Pieces Slump::pieces(const Scene& scene) const {
   if (mould_lift_velocity) p.walls.push_back(mould(*this, scene));
   p.drop = cone_height;
   p.domain = Domain{domain_radius, domain_height};
-  p.profile = {ProfileAxis::Of::depth, "r_m"};
+  p.gauged = SpreadGauge{.about_axis = dimension != Dimension::plane};
+  p.profile = {ProfileAxis::Of::depth, dimension == Dimension::plane ? "x_m" : "r_m"};
   return p;
 }
 

@@ -151,6 +151,8 @@ Pieces VFunnel::pieces(const Scene& scene) const {
   p.runs_out = true;
   p.drop = height() + fall_height;
   if (scene.base.law != Wall::slip) p.passage = plane ? outlet_width : std::min(outlet_width, depth);
+  p.gauged =
+      OutletGauge{.half_width = outlet, .half_depth = deep, .half_top = wide, .quarters = full ? 4.0 : 1.0};
   p.profile = {ProfileAxis::Of::depth, "x_m"};
   return p;
 }

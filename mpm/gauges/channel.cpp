@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mpm/gauges/body_gauge.h"
+#include "mpm/gauges/quantile.h"
+#include "runs/depth.h"
+#include "runs/gauges.h"
+
+namespace flowrest::mpm {
+
+namespace {
+
+/// How far material has run along a channel, and how deep it stands at either end.
+class Channel : public BodyGauge {
+ public:
+  Channel(const GaugeCase& of, const scenes::ChannelGauge& channel)
+      : gauges_(of.scene.gauges),
+        channel_(channel),
+        factor_(of.pieces.whole_over_computed),
+        volume_(static_cast<std::size_t>(std::max(1.0, std::round(channel.length / of.cell))), 0.0),
+        spacing_(channel.length / static_cast<double>(volume_.size())) {}
+
+  void begin(Solver& solver) override {
+    front_of_mass_ = quantile_of_motion(
+        solver, 0.995, [](const ParticleBatch& b, std::size_t i) { return b.position[0][i]; });
+  }
+
+  void add(const ParticleBatch& b) override {
+    const auto last = static_cast<double>(volume_.size() - 1);
+    for (std::size_t i = 0; i < b.count; ++i)
+      volume_[static_cast<std::size_t>(std::clamp(b.position[0][i] / spacing_, 0.0, last))] += b.volume[i];
+  }
+
+  BodyReading finish() override {
+    BodyReading r;
+    for (std::size_t i = 0; i < volume_.size(); ++i) {
+      r.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing_);
+      r.value.push_back(factor_ * volume_[i] / (spacing_ * channel_.width));
+    }
+    const double front =
+        runs::front(r.coordinate, r.value, channel_.length, gauges_.front_depth) - channel_.begin;
+    r.columns.add(runs::column::front, front);
+    r.columns.add(runs::column::front_of_mass, front_of_mass_ - channel_.begin);
+    r.columns.add(runs::end_columns(r.value, spacing_, gauges_));
+    r.main = 1e3 * front;
+    r.words = runs::shown_length("front", front, gauges_.front_depth);
+    return r;
+  }
+
+ private:
+  const scenes::Gauges& gauges_;
+  scenes::ChannelGauge channel_;
+  double factor_;
+  std::vector<double> volume_;  ///< m3 (plane: m2) over equal bins along x
+  double spacing_;              ///< m
+  double front_of_mass_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<BodyGauge> channel_gauge(const GaugeCase& of, const scenes::ChannelGauge& gauge) {
+  return std::make_unique<Channel>(of, gauge);
+}
+
+}  // namespace flowrest::mpm

@@ -1,0 +1,100 @@
+#include "mpm/gauges/gauges.h"
+
+#include <algorithm>
+
+#include "mpm/gauges/quantile.h"
+#include "mpm/solver/settings.h"
+
+namespace flowrest::mpm {
+
+namespace {
+
+/// Sums that every body has.
+class Sums {
+ public:
+  Sums(const scenes::Scene& scene, double factor, const runs::Rest& rest, std::size_t particles)
+      : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor), rest_(rest) {
+    rates_.reserve(particles);
+    // Without flocculation the overstress of all is in proportion to their shear rate.
+    flocculates_ = scene.thixotropy && rest.can_rest();
+    if (flocculates_) overstresses_.reserve(particles);
+  }
+
+  void add(const ParticleBatch& b, std::size_t vertical) {
+    for (std::size_t i = 0; i < b.count; ++i) {
+      double speed_squared = 0.0;
+      for (const auto& v : b.velocity) speed_squared += v[i] * v[i];
+      kinetic_ += 0.5 * b.mass[i] * speed_squared;
+      potential_ += b.mass[i] * gravity_ * b.position[vertical][i];
+      elastic_ += b.elastic_energy[i];
+      mass_ += b.mass[i];
+      volume_ += b.volume[i];
+      rates_.emplace_back(b.rate[i], b.mass[i]);
+      if (!b.flocculation.empty()) flocculation_ += b.mass[i] * b.flocculation[i];
+      if (flocculates_) overstresses_.emplace_back(rest_.overstress(b.rate[i], b.flocculation[i]), b.mass[i]);
+      highest_ = std::max(highest_, b.position[vertical][i]);
+    }
+  }
+
+  Measures finish() {
+    Measures m;
+    m.energies.kinetic = factor_ * kinetic_;
+    m.energies.potential = factor_ * potential_;
+    m.energies.elastic = factor_ * elastic_;
+    m.volume = factor_ * volume_;
+    m.volume_at_rest = factor_ * mass_ / density_;
+    m.flocculation_mean = flocculation_ / mass_;
+    m.highest = highest_;
+    m.shear_rate_p99 = quantile(rates_, 0.99);
+    m.overstress_p99 = flocculates_ ? quantile(overstresses_, 0.99) : rest_.overstress(m.shear_rate_p99);
+    return m;
+  }
+
+ private:
+  double gravity_, density_, factor_;
+  const runs::Rest& rest_;
+  bool flocculates_ = false;
+  double kinetic_ = 0.0, potential_ = 0.0, elastic_ = 0.0, mass_ = 0.0, volume_ = 0.0, flocculation_ = 0.0;
+  double highest_ = 0.0;
+  std::vector<Weighted> rates_, overstresses_;
+};
+
+}  // namespace
+
+Gauges::Gauges(const scenes::Scene& scene, const scenes::Pieces& pieces)
+    : scene_(scene), pieces_(pieces), rest_(scene), cell_(cell_size(scene)) {}
+
+Measures Gauges::measure(Solver& solver) const {
+  const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
+  const auto gauge = body_gauge({scene_, pieces_, cell_, vertical});
+  gauge->begin(solver);
+  Sums sums(scene_, pieces_.whole_over_computed, rest_, solver.particle_count());
+  solver.visit([&](const ParticleBatch& b) {
+    sums.add(b, vertical);
+    gauge->add(b);
+  });
+  Measures m = sums.finish();
+  m.body = gauge->finish();
+  return m;
+}
+
+runs::Row Gauges::row(double time, double step, const Measures& m) const {
+  using namespace runs::column;
+  const Energies& e = m.energies;
+  runs::Row row;
+  row.add(runs::column::time, time)
+      .add(m.body.columns)
+      .add(volume, m.volume)
+      .add(volume_at_rest, m.volume_at_rest)
+      .add(kinetic_energy, e.kinetic)
+      .add(potential_energy, e.potential)
+      .add(elastic_energy, e.elastic)
+      .add(dissipated_energy, e.dissipated)
+      .add(numerical_energy, e.numerical)
+      .add(shear_rate, m.shear_rate_p99)
+      .add(time_step, step);
+  if (scene_.thixotropy) row.add(flocculation, m.flocculation_mean);
+  return row;
+}
+
+}  // namespace flowrest::mpm
