@@ -35,7 +35,8 @@ std::vector<double> common_grid(const Comparison& comparison) {
   std::vector<double> grid;
   if (!(extent > 0.0)) return grid;
   if (comparison.kind == scenes::Kind::duct) {
-    for (int i = -points / 2; i <= points / 2; ++i) grid.push_back(extent * i / (points / 2));
+    constexpr int half = points / 2;
+    for (int i = -half; i <= half; ++i) grid.push_back(extent * i / half);
   } else {
     const double step = round_step(1.05 * extent / points);
     for (int i = 0; i * step <= 1.05 * extent; ++i) grid.push_back(i * step);

@@ -283,9 +283,10 @@ void note_missing(Comparison& comparison) {
     if (!models.is_array()) continue;
     for (const Json& model : models) {
       if (!model.is_string()) continue;
-      const bool here = std::any_of(comparison.runs.begin(), comparison.runs.end(), [&](const RunView& view) {
-        return view.solver == solver && view.model == model.get<std::string>();
-      });
+      const bool here = std::any_of(comparison.runs.begin(), comparison.runs.end(),
+                                    [&, &solver = solver](const RunView& view) {
+                                      return view.solver == solver && view.model == model.get<std::string>();
+                                    });
       if (here) continue;
       const auto command = command_for(comparison, solver, model.get<std::string>());
       comparison.missing.push_back(fmt::format("{} {}{}", solver == "mpm" ? "MPM" : "OpenFOAM",

@@ -125,7 +125,7 @@ FolderLock::~FolderLock() {
 }
 
 FolderLock::FolderLock(FolderLock&& other) noexcept
-    : folder_(other.folder_),
+    : folder_(std::move(other.folder_)),
       first_made_(std::move(other.first_made_)),
       file_(std::exchange(other.file_, -1)) {}
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "runs/console.h"
@@ -17,7 +18,7 @@ constexpr Seconds terminal_interval{0.1};
 constexpr Seconds plain_interval{5.0};
 
 std::string duration_text(double seconds) {
-  const auto whole = static_cast<long>(std::clamp(seconds, 0.0, 3.6e8) + 0.5);
+  const auto whole = std::lround(std::clamp(seconds, 0.0, 3.6e8));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);

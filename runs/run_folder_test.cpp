@@ -13,7 +13,6 @@ using namespace flowrest::runs;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
-using testing::Not;
 
 namespace {
 

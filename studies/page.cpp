@@ -16,7 +16,6 @@ namespace {
 using report::Axis;
 using report::Block;
 using report::Chapter;
-using report::Column;
 using report::Curve;
 using report::Map;
 using report::Plot;

@@ -94,7 +94,7 @@ void SnapshotWriter::write(double time, Solver& solver) {
   solver.visit([&](const ParticleBatch& batch) {
     for (std::size_t i = 0; i < batch.count; ++i)
       for (auto [to, from] : {std::pair{&points, &batch.position}, std::pair{&velocity, &batch.velocity}}) {
-        const auto at = [&](std::size_t axis) { return static_cast<float>((*from)[axis][i]); };
+        const auto at = [&, from = from](std::size_t axis) { return static_cast<float>((*from)[axis][i]); };
         // A slump's section stands upright, so that it can be laid over a three-dimensional run.
         const bool upright = dimension_ == 2 && !duct_;
         for (const float x : {at(0), upright ? 0.0f : at(1), upright ? at(1) : at(2)}) (*to)->add(x);

@@ -234,7 +234,7 @@ TEST(Sampling, AnUnstructuredMeshFillsEveryBodyWithParticlesOfUnequalVolume) {
                                         {"dam-break", "plane"},
                                         {"poiseuille-step-down", "plane"}}) {
     const std::string of = std::string(name) + " " + dimension;
-    const auto of_scene = [&](const std::vector<std::string>& more) {
+    const auto of_scene = [&, name = name, dimension = dimension](const std::vector<std::string>& more) {
       std::vector<std::string> set = {"geometry.dimension=" + std::string(dimension),
                                       "mpm.particles_per_cell=8"};
       if (std::string(dimension) == "axisymmetric" || std::string(dimension) == "plane")

@@ -177,8 +177,8 @@ std::map<std::pair<Solver, std::string>, Group> groups_of(const std::vector<Scen
 }
 
 std::string named(const Number& n) {
-  return fmt::format("{}{}", n.published.scene,
-                     laws::can_rest(n.model) ? "" : " " + scenes::to_string(n.model));
+  if (laws::can_rest(n.model)) return n.published.scene;
+  return fmt::format("{} {}", n.published.scene, scenes::to_string(n.model));
 }
 
 /// The order of the funnels' times: every pair that the paper tells apart.

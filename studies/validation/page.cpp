@@ -17,7 +17,6 @@ namespace {
 
 using compare::words::listed;
 using compare::words::reading;
-using report::Column;
 using report::Format;
 using report::Table;
 using report::Text;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,10 @@
 #include "studies/job.h"
 #include "studies/validation/published.h"
 #include "studies/workflow.h"
+
+namespace CLI {
+class App;
+}
 
 /// The papers' scenes, each run at two resolutions in every solver and law that it names, against published
 /// numbers. The runs are jobs of a study's workflow.
