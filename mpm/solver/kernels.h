@@ -66,13 +66,13 @@ using AverageReader = void (*)(const StepParameters<T>&, const ParticleView<T>&,
 template <class T>
 struct Kernels {
   int dimension = 0;
-  BlockStage<T> particles_to_grid =
-      nullptr;  ///< mass, momentum and the impulse of the step's forces into the arena
+  /// Mass, momentum and the impulse of the step's forces into the arena.
+  BlockStage<T> particles_to_grid = nullptr;
   NodeStage<T> update_nodes = nullptr;  ///< arenas summed into velocities
-  BlockStage<T> grid_to_particles =
-      nullptr;                         ///< quadratic: velocities, strain, stress, positions
-                                       ///< linear: velocities, and their momentum re-mapped into the arena
-  NodeStage<T> remap_nodes = nullptr;  ///< linear only (MUSL)
+  /// Quadratic: velocities, strain, stress, positions. Linear: velocities, and their momentum re-mapped into the
+  /// arena.
+  BlockStage<T> grid_to_particles = nullptr;
+  NodeStage<T> remap_nodes = nullptr;             ///< linear only (MUSL)
   BlockStage<T> remapped_to_particles = nullptr;  ///< linear only (MUSL): strain, stress, positions
   // Quadratic only, for the smooth B-bar:
   NodeStage<T> average_dilatation = nullptr;  ///< of what grid_to_particles left in the arenas
