@@ -4,8 +4,8 @@
 
 #include "runs/run_directory.h"
 #ifdef FLOWREST_HAS_FOAM
+#include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
-#include "runs/process.h"
 #endif
 
 namespace flowrest::cli {
@@ -25,12 +25,17 @@ std::string parts() {
 }
 
 #ifdef FLOWREST_HAS_FOAM
+std::string interfoam() {
+  try {
+    return fmt::format("interFoam is {}", foam::openfoam_program("interFoam").string());
+  } catch (const runs::MissingProgram& missing) {
+    return missing.what();
+  }
+}
+
 std::string openfoam() {
-  const auto program = runs::find_program("interFoam");
-  const std::string there = program ? fmt::format("interFoam is {}", program->string())
-                                    : "interFoam is not on the PATH (Debian: apt-get install openfoam)";
   const std::string compiled = foam::openfoam_of_plug_in();
-  return compiled.empty() ? there : fmt::format("the plug-in is for {}; {}", compiled, there);
+  return compiled.empty() ? interfoam() : fmt::format("the plug-in is for {}; {}", compiled, interfoam());
 }
 #endif
 
