@@ -13,7 +13,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "")
 
 set(recommended gmsh)
-if(FLOWREST_FOAM)
+if(FLOWREST_FOAM AND FLOWREST_OPENFOAM STREQUAL "debian")
   # The plug-in fits the version that it was compiled against and no other.
   if(FLOWREST_OPENFOAM_VERSION MATCHES "^([0-9]+)")
     math(EXPR next "${CMAKE_MATCH_1} + 1")

@@ -29,9 +29,7 @@ constexpr std::size_t layers = 5;
 class InclinedLayer : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!runs::find_program("interFoam"))
-      GTEST_SKIP()
-          << "OpenFOAM is not installed (Debian: apt-get install openfoam): interFoam is not on the PATH";
+    if (const std::string missing = testing::what_openfoam_lacks(); !missing.empty()) GTEST_SKIP() << missing;
     if (!find_plug_in())
       GTEST_SKIP() << "the rheology plug-in was not built: OpenFOAM's headers are missing (scripts/setup "
                       "fetches them)";

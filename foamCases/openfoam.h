@@ -6,7 +6,8 @@
 #include "runs/environment.h"
 
 /// Which OpenFOAM is run, and what its programs are told. It is the one that flowrest was built with (the
-/// plug-in fits no other), whatever a shell has sourced and whatever lies on the PATH.
+/// plug-in fits no other), whatever a shell has sourced and whatever lies on the PATH: Debian's, or the one
+/// that was sourced when CMake was told to take that (openfoam.cmake).
 namespace flowrest::foam {
 
 /// A program of OpenFOAM's: in the folder that FLOWREST_OPENFOAM_PROGRAMS names where it is set, else where
@@ -14,7 +15,7 @@ namespace flowrest::foam {
 /// @throws runs::MissingProgram where it is not there.
 std::filesystem::path openfoam_program(const std::string& name);
 
-/// The mpirun of the MPI that OpenFOAM was built with: beside its programs.
+/// The mpirun of the Open MPI that OpenFOAM was built with.
 /// @throws runs::MissingProgram where it is not there.
 std::filesystem::path openfoam_mpirun();
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "foamCases/openfoam.h"
+#include "runs/errors.h"
 #include "runs/temporary_folder.h"
 #include "scenes/scene.h"
 
@@ -21,6 +23,16 @@ inline std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(path.string() + " cannot be read");
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Why no case can be run; empty where they can.
+inline std::string what_openfoam_lacks() {
+  try {
+    openfoam_program("interFoam");
+  } catch (const runs::MissingProgram& missing) {
+    return missing.what();
+  }
+  return "";
 }
 
 using runs::TemporaryFolder;

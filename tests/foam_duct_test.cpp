@@ -12,7 +12,6 @@
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/test_scene.h"
-#include "runs/process.h"
 
 namespace flowrest {
 namespace {
@@ -22,9 +21,8 @@ constexpr double height = 0.5, density = 2000.0, viscosity = 30.0, force = 2000.
 class FoamDuct : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!runs::find_program("interFoam"))
-      GTEST_SKIP()
-          << "OpenFOAM is not installed (Debian: apt-get install openfoam): interFoam is not on the PATH";
+    if (const std::string missing = foam::testing::what_openfoam_lacks(); !missing.empty())
+      GTEST_SKIP() << missing;
     if (!foam::find_plug_in())
       GTEST_SKIP() << "the rheology plug-in was not built: OpenFOAM's headers are missing (scripts/setup "
                       "fetches them)";

@@ -1,8 +1,7 @@
 #include "foamCases/rheology/inclined_cells.h"
 
-#include <dlfcn.h>
-
 #include "addToRunTimeSelectionTable.H"
+#include "foamCases/rheology/openfoam_version.h"
 #include "fvcSnGrad.H"
 #include "uniformDimensionedFields.H"
 
@@ -52,17 +51,16 @@ inclinedCells::inclinedCells(const word& name, const word& model, const dictiona
 }
 
 void inclinedCells::find_faulty() {
-  using Reconstruct = tmp<volVectorField> (*)(const surfaceScalarField&);
-  // Foam::fvc::reconstruct<double>(surfaceScalarField const&), the one that the running program has.
-  void* symbol =
-      dlsym(RTLD_DEFAULT,
-            "_ZN4Foam3fvc11reconstructIdEENS_3tmpINS_14GeometricFieldINS_12outerProductINS_6VectorIdEET_"
-            "E4typeENS_12fvPatchFieldENS_7volMeshEEEEERKNS3_IS7_NS_13fvsPatchFieldENS_11surfaceMeshEEE");
-  if (symbol == nullptr) return;
+  const Reconstruct reconstruct = reconstruct_of_solver();
+  if (reconstruct == nullptr) {
+    Info << "inclinedCells: this solver does not say how it takes forces to cells; it is taken to be right"
+         << endl;
+    return;
+  }
   const vector uniform(1.0, 2.0, 3.0);
   constexpr scalar noticeable = 1e-9;
   const surfaceScalarField flux("uniformFlux", mesh_.Sf() & dimensionedVector("uniform", dimless, uniform));
-  const auto found = reinterpret_cast<Reconstruct>(symbol)(flux);
+  const auto found = reconstruct(flux);
   forAll(inverse_, cell) {
     const vector& value = found().primitiveField()[cell];
     if (mag(value - uniform) < noticeable) continue;
