@@ -9,6 +9,7 @@
 
 #include "compare/comparison.h"
 #include "compare/exact/exact_run.h"
+#include "elements/commands.h"
 #include "runs/run_directory.h"
 #include "scenes/plausibility.h"
 #include "scenes/scene.h"
@@ -30,7 +31,8 @@ void add_exact(CLI::App& app) {
   CLI::App* command = app.add_subcommand("exact", "Write the scene's exact or asymptotic solutions as runs");
   command->add_option("SCENE", arguments->scene, "A scene file, or the name of one in scenes/")->required();
   command->add_option("-o,--output", arguments->output,
-                      "Folder that receives a run for each solution (out/SCENE/exact)");
+                      "Folder that receives a run for each solution (out/SCENE/exact); with --elements the run "
+                      "directory (out/SCENE/exact/elements)");
   command->add_option("--set", arguments->set, "Override a key: material.yield_stress=100")
       ->allow_extra_args(false);
   command->add_flag("--thin-film", arguments->thin_film,
@@ -42,10 +44,15 @@ void add_exact(CLI::App& app) {
       "run; 0: broken down");
   command->add_flag("--force", arguments->force, "Replace whatever runs stand in the way");
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
-  command->callback([arguments] {
+  const auto by_elements = elements::add_options(*command, {"--thin-film", "--flocculation"});
+  command->callback([arguments, by_elements] {
     const auto scene =
         scenes::load_scene(arguments->scene, scenes::overrides_of_command_line(arguments->set));
     scenes::print_notes(scenes::plausibility_notes(scene));
+    if (by_elements->chosen) {
+      elements::run_command(scene, *by_elements, arguments->output, arguments->force, arguments->json);
+      return;
+    }
     if (arguments->thin_film) exact::check_film(scene);
     const std::string output = arguments->output.empty() ? "out/" + scene.name + "/exact" : arguments->output;
     nlohmann::ordered_json json = {{"runs", nlohmann::ordered_json::array()}};

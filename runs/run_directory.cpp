@@ -58,7 +58,7 @@ std::string profile_header(scenes::Kind kind) {
 
 /// What runs leave beside run.json. Nothing else in a run directory is ever removed.
 void remove_outputs(const fs::path& directory) {
-  for (const char* name : {"history.csv", "profiles.csv", "particles", "case"})
+  for (const char* name : {"history.csv", "profiles.csv", "particles", "case", "fields"})
     fs::remove_all(directory / name);
   std::vector<fs::path> leftovers;
   for (const auto& entry : fs::directory_iterator(directory))
