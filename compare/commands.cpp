@@ -30,9 +30,10 @@ void add_exact(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("exact", "Write the scene's exact or asymptotic solutions as runs");
   command->add_option("SCENE", arguments->scene, "A scene file, or the name of one in scenes/")->required();
-  command->add_option("-o,--output", arguments->output,
-                      "Folder that receives a run for each solution (out/SCENE/exact); with --elements the run "
-                      "directory (out/SCENE/exact/elements)");
+  command->add_option(
+      "-o,--output", arguments->output,
+      "Folder that receives a run for each solution (out/SCENE/exact); with --elements the run "
+      "directory (out/SCENE/exact/elements)");
   command->add_option("--set", arguments->set, "Override a key: material.yield_stress=100")
       ->allow_extra_args(false);
   command->add_flag("--thin-film", arguments->thin_film,

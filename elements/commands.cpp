@@ -10,9 +10,10 @@ namespace flowrest::elements {
 
 std::shared_ptr<Options> add_options(CLI::App& exact, const std::vector<std::string>& others) {
   auto options = std::make_shared<Options>();
-  CLI::Option* chosen = exact.add_flag("--elements", options->chosen,
-                                       "Instead, compute a slump by finite elements, two-dimensional and with inertia, "
-                                       "with the uncertainty of its spread at each time");
+  CLI::Option* chosen =
+      exact.add_flag("--elements", options->chosen,
+                     "Instead, compute a slump by finite elements, two-dimensional and with inertia, "
+                     "with the uncertainty of its spread at each time");
   for (const auto& name : others) chosen->excludes(exact.get_option(name));
   exact
       .add_option("--columns", options->columns,
@@ -24,7 +25,8 @@ std::shared_ptr<Options> add_options(CLI::App& exact, const std::vector<std::str
   return options;
 }
 
-void run_command(const scenes::Scene& scene, const Options& asked, const std::string& output, bool force, bool json) {
+void run_command(const scenes::Scene& scene, const Options& asked, const std::string& output, bool force,
+                 bool json) {
   const runs::InterruptGuard guard;
   RunOptions options;
   options.directory = output.empty() ? std::filesystem::path("out") / scene.name / "exact" / "elements"

@@ -49,7 +49,8 @@ Eigen::Vector3d PressureModes::at(const Point& point) const {
 bool ElementMatrices::compute(const ElementPositions& position, Symmetry symmetry) {
   static const auto shapes = [] {
     std::array<Shape, element_points> all;
-    for (std::size_t q = 0; q < all.size(); ++q) all[q] = shape_at(gauss_points()[q].xi, gauss_points()[q].eta);
+    for (std::size_t q = 0; q < all.size(); ++q)
+      all[q] = shape_at(gauss_points()[q].xi, gauss_points()[q].eta);
     return all;
   }();
   strain.setZero();
@@ -66,14 +67,16 @@ bool ElementMatrices::compute(const ElementPositions& position, Symmetry symmetr
     if (!(determinant > 0.0)) return false;
     const Point place = position * shape.value;
     const bool round = symmetry == Symmetry::about_axis;
-    const double w = gauss_points()[static_cast<std::size_t>(q)].weight * determinant * (round ? place.x() : 1.0);
+    const double w =
+        gauss_points()[static_cast<std::size_t>(q)].weight * determinant * (round ? place.x() : 1.0);
     if (!(w > 0.0)) return false;
     weight[q] = w;
     const Eigen::Matrix<double, element_nodes, 2> gradient = shape.gradient * jacobian.inverse();
     const Point offset = (place - modes.centre) / modes.size;
     const Eigen::Vector3d plain(1.0, offset.x(), offset.y());
     for (int a = 0; a < element_nodes; ++a) {
-      const double by_r = gradient(a, 0), by_z = gradient(a, 1), hoop = round ? shape.value[a] / place.x() : 0.0;
+      const double by_r = gradient(a, 0), by_z = gradient(a, 1),
+                   hoop = round ? shape.value[a] / place.x() : 0.0;
       const int row = strain_rows * q;
       strain(row, 2 * a) = std::numbers::sqrt2 * by_r;
       strain(row + 1, 2 * a + 1) = std::numbers::sqrt2 * by_z;

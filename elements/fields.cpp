@@ -23,9 +23,9 @@ class Appended {
   /// Adds an array and gives the element that names it.
   template <class T>
   std::string array(const std::string& name, const char* type, int components, const std::vector<T>& values) {
-    const std::string element =
-        fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                    type, name, components, data_.size());
+    const std::string element = fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+        type, name, components, data_.size());
     const auto bytes = static_cast<std::uint32_t>(values.size() * sizeof(T));
     append(&bytes, sizeof bytes);
     append(values.data(), bytes);
@@ -65,11 +65,12 @@ std::string vtu_of(const Slump& slump) {
   Appended appended;
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
-      "header_type=\"UInt32\">\n<UnstructuredGrid>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
+      "header_type=\"UInt32\">\n<UnstructuredGrid>\n<FieldData>\n<DataArray type=\"Float64\" "
+      "Name=\"TimeValue\" "
       "NumberOfTuples=\"1\" format=\"ascii\">{:.17g}</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"{}\" "
       "NumberOfCells=\"{}\">\n",
-      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", slump.time(), topology.nodes(),
-      topology.elements());
+      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", slump.time(),
+      topology.nodes(), topology.elements());
   text += "<PointData>\n" + appended.array("velocity", "Float32", 3, in_section(slump.velocity())) +
           appended.array("pressure", "Float32", 1, floats(slump.flow().node_pressures(mesh.position))) +
           appended.array("shear_rate", "Float32", 1, floats(slump.flow().node_rates(slump.velocity()))) +
@@ -84,7 +85,8 @@ void FieldWriter::write(const Slump& slump) {
   if (series_.empty()) runs::make_folder(directory_);
   series_.emplace_back(fmt::format("fields_{:06}.vtu", series_.size()), slump.time());
   runs::write_atomically(directory_ / series_.back().first, vtu_of(slump));
-  std::string index = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  std::string index =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (const auto& [name, time] : series_)
     index += fmt::format("<DataSet timestep=\"{:.17g}\" file=\"{}\"/>\n", time, name);
   runs::write_atomically(directory_ / "fields.pvd", index + "</Collection>\n</VTKFile>\n");

@@ -9,9 +9,9 @@
 
 namespace flowrest::elements {
 
-/// Writes velocity (m/s), pressure (Pa) and shear rate (1/s) of a slump as VTK XML, `fields_NNNNNN.vtu`, biquadratic
-/// quadrilaterals in the x-z plane, and brings `fields.pvd`, which ParaView opens as a time series, up to date. They
-/// are those of the middle of the last step, on the mesh at its end.
+/// Writes velocity (m/s), pressure (Pa) and shear rate (1/s) of a slump as VTK XML, `fields_NNNNNN.vtu`,
+/// biquadratic quadrilaterals in the x-z plane, and brings `fields.pvd`, which ParaView opens as a time
+/// series, up to date. They are those of the middle of the last step, on the mesh at its end.
 class FieldWriter {
  public:
   /// `directory` is made with the first field.

@@ -7,12 +7,12 @@ namespace flowrest::elements {
 
 namespace {
 
-constexpr double penalty_over_viscosity = 1e3;
+/// The penalty of the augmented Lagrangian over the largest and over the plastic viscosity: an iteration
+/// leaves about the inverse of the divergence that it finds.
+constexpr double penalty_over_largest = 1e3, penalty_over_plastic = 1e6;
 constexpr int most_iterations = 80;
 /// An iteration that would gain less than this share of the power at work is the last.
 constexpr double power_tolerance = 1e-10;
-/// A mean divergence that is left, of the mean shear rate.
-constexpr double divergence_tolerance = 1e-9;
 
 using Strain = Eigen::Matrix<double, strain_rows * element_points, 1>;
 
@@ -24,7 +24,8 @@ Flow::Flow(const Topology& topology, const Problem& problem, const Fluid& fluid)
       density_(problem.density),
       gravity_(problem.gravity),
       fluid_(fluid),
-      penalty_(penalty_over_viscosity * fluid.largest_viscosity()),
+      penalty_(std::max(penalty_over_largest * fluid.largest_viscosity(),
+                        penalty_over_plastic * problem.flow.parameters.plastic_viscosity)),
       element_(static_cast<std::size_t>(topology.elements())),
       pressure_(element_.size(), Eigen::Vector3d::Zero()),
       system_(topology) {}
@@ -50,7 +51,8 @@ void Flow::each_element(Use&& use) const {
     for (int r = 0; r < topology_.rows; ++r) use(c, r, element_[index(c, r)]);
 }
 
-/// Adds an element's second derivatives to its column's matrix, and the negative of its first ones to `downhill`.
+/// Adds an element's second derivatives to its column's matrix, and the negative of its first ones to
+/// `downhill`.
 void Flow::assemble_element(const FlowTask& task, const Eigen::VectorXd& velocity, int column, int row,
                             Eigen::MatrixXd& matrix, Eigen::VectorXd& downhill) const {
   const ElementMatrices& e = element_[index(column, row)];
@@ -79,7 +81,8 @@ void Flow::assemble_element(const FlowTask& task, const Eigen::VectorXd& velocit
   ElementVelocity first = e.divergence.transpose() * multiplier - e.strain.transpose() * stress;
   const double inertia = density_ * task.rate;
   const ElementVelocity moved =
-      v - of_element(Eigen::Map<const Eigen::VectorXd>(task.history.data(), task.history.size()), column, row);
+      v -
+      of_element(Eigen::Map<const Eigen::VectorXd>(task.history.data(), task.history.size()), column, row);
   for (int a = 0; a < element_nodes; ++a) {
     for (int b = 0; b < element_nodes; ++b)
       for (int i = 0; i < 2; ++i) {
@@ -123,7 +126,8 @@ bool Flow::find_direction(const FlowTask& task, const Eigen::VectorXd& velocity,
 }
 
 /// How far along a direction the augmented functional is least: the root of its derivative, which rises.
-double Flow::search(const FlowTask& task, const Eigen::VectorXd& velocity, const Eigen::VectorXd& direction) const {
+double Flow::search(const FlowTask& task, const Eigen::VectorXd& velocity,
+                    const Eigen::VectorXd& direction) const {
   struct Along {
     double square, mixed, change, weight;  // rate^2 = square + 2 mixed x + change x^2
   };
@@ -244,9 +248,8 @@ Eigen::VectorXd Flow::node_means(const Value& value) const {
 }
 
 Eigen::VectorXd Flow::node_pressures(const Field& position) const {
-  return node_means([&](int c, int r, int a) {
-    return pressure(c, r, position.col(topology_.element_node(c, r, a)));
-  });
+  return node_means(
+      [&](int c, int r, int a) { return pressure(c, r, position.col(topology_.element_node(c, r, a))); });
 }
 
 /// The rates of an element at its Gauss points, carried to its nodes as a polynomial of the same order.
@@ -264,7 +267,8 @@ Eigen::VectorXd Flow::node_rates(const Field& velocity) const {
   each_element([&](int c, int r, const ElementMatrices& e) {
     const Strain strain = e.strain * of_element(v, c, r);
     NodeValues at_points;
-    for (int q = 0; q < element_points; ++q) at_points[q] = strain.segment<strain_rows>(strain_rows * q).norm();
+    for (int q = 0; q < element_points; ++q)
+      at_points[q] = strain.segment<strain_rows>(strain_rows * q).norm();
     rates[index(c, r)] = (to_nodes * at_points).cwiseMax(0.0);
   });
   return node_means([&](int c, int r, int a) { return rates[index(c, r)][a]; });

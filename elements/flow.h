@@ -9,8 +9,8 @@ namespace flowrest::elements {
 
 /// What a step asks of the flow: the velocity v that minimises, among all without divergence,
 ///   int rho rate / 2 |v - history|^2 + int phi(D(v)) - int rho g . v,
-/// phi the potential of the flow law (its derivative by the shear rate is the stress). It is convex for every law whose
-/// stress does not fall with the rate.
+/// phi the potential of the flow law (its derivative by the shear rate is the stress). It is convex for every
+/// law whose stress does not fall with the rate.
 struct FlowTask {
   double rate = 0.0;       ///< 1/s: v's weight in the time derivative, rate (v - history)
   Field history;           ///< m/s
@@ -26,8 +26,9 @@ struct FlowOutcome {
   double gravity = 0.0;     ///< W, given by gravity
 };
 
-/// The minimiser: Newton's method with an exact search along each of its directions. The pressure is the multiplier of
-/// the constraint, brought to it by an augmented Lagrangian within the same iterations (Fortin and Glowinski 1983).
+/// The minimiser: Newton's method with an exact search along each of its directions. The pressure is the
+/// multiplier of the constraint, brought to it by an augmented Lagrangian within the same iterations (Fortin
+/// and Glowinski 1983).
 class Flow {
  public:
   Flow(const Topology&, const Problem&, const Fluid&);
@@ -48,7 +49,9 @@ class Flow {
 
  private:
   using ElementVelocity = Eigen::Matrix<double, element_dofs, 1>;
-  std::size_t index(int column, int row) const { return static_cast<std::size_t>(column * topology_.rows + row); }
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(column * topology_.rows + row);
+  }
   ElementVelocity of_element(const Eigen::VectorXd&, int column, int row) const;
   template <class Use>
   void each_element(Use&&) const;
@@ -56,7 +59,8 @@ class Flow {
   Eigen::VectorXd node_means(const Value&) const;
   void assemble_element(const FlowTask&, const Eigen::VectorXd& velocity, int column, int row,
                         Eigen::MatrixXd& matrix, Eigen::VectorXd& downhill) const;
-  bool find_direction(const FlowTask&, const Eigen::VectorXd& velocity, Eigen::VectorXd& direction, double& slope);
+  bool find_direction(const FlowTask&, const Eigen::VectorXd& velocity, Eigen::VectorXd& direction,
+                      double& slope);
   double search(const FlowTask&, const Eigen::VectorXd& velocity, const Eigen::VectorXd& direction) const;
   void relax_pressure(const Eigen::VectorXd& velocity);
   void balance(const FlowTask&, const Eigen::VectorXd& velocity, FlowOutcome&) const;

@@ -13,8 +13,8 @@ struct Response {
   double tangent = 0.0;    ///< d stress / d rate
 };
 
-/// The flow law as the minimisation needs it, with a viscosity at every rate. A law that can rest is rounded at rest:
-/// tau = (eta + tau0 / sqrt(rate^2 + rounding^2)) rate, which is Bingham's in the limit.
+/// The flow law as the minimisation needs it, with a viscosity at every rate. A law that can rest is rounded
+/// at rest: tau = (eta + tau0 / sqrt(rate^2 + rounding^2)) rate, which is Bingham's in the limit.
 class Fluid {
  public:
   /// `rounding` in 1/s; laws that cannot rest do not read it.
@@ -27,7 +27,8 @@ class Fluid {
         if (!(p.yield_stress > 0.0)) return {p.plastic_viscosity, p.plastic_viscosity};
         const double square = rate * rate + rounding_ * rounding_;
         const double plastic = p.yield_stress / std::sqrt(square);
-        return {p.plastic_viscosity + plastic, p.plastic_viscosity + plastic * rounding_ * rounding_ / square};
+        return {p.plastic_viscosity + plastic,
+                p.plastic_viscosity + plastic * rounding_ * rounding_ / square};
       } else {
         return {own.viscosity(p, rate), own.tangent(p, rate)};
       }

@@ -7,11 +7,11 @@ namespace flowrest::elements {
 
 namespace {
 
-constexpr double column_grading = 10.0;  ///< width of the first column over that of the last
+constexpr double column_grading = 20.0;  ///< width of the first column over that of the last
 constexpr double row_grading = 4.0;      ///< height of the highest row over that of the lowest
 
-/// Places of nodes on [0, 1]: widths of elements grow by a constant factor to `ratio` in all, a node in the middle of
-/// each.
+/// Places of nodes on [0, 1]: widths of elements grow by a constant factor to `ratio` in all, a node in the
+/// middle of each.
 std::vector<double> graded(int elements, double ratio) {
   const double k = std::log(ratio);
   std::vector<double> place(static_cast<std::size_t>(2 * elements + 1));
@@ -21,8 +21,9 @@ std::vector<double> graded(int elements, double ratio) {
   return place;
 }
 
-/// The line of a column of nodes from floor to surface: straight, or an arc about the toe, or something between. The toe
-/// needs arcs: where the front rolls over, floor and surface meet in an angle of up to half a turn.
+/// The line of a column of nodes from floor to surface: straight, or an arc about the toe, or something
+/// between. The toe needs arcs: where the front rolls over, floor and surface meet in an angle of up to half
+/// a turn.
 class Spine {
  public:
   Spine(const Point& floor, const Point& top, const Point& toe, double roundness)

@@ -8,8 +8,9 @@ namespace flowrest::elements {
 
 using Field = Eigen::Matrix2Xd;  ///< a vector for each node
 
-/// Elements in columns from floor to surface. The outer edge of the last column is one point, the toe. Nodes stand in
-/// columns as well, two for each column of elements, counted from below and from the axis; the toe is the last node.
+/// Elements in columns from floor to surface. The outer edge of the last column is one point, the toe. Nodes
+/// stand in columns as well, two for each column of elements, counted from below and from the axis; the toe
+/// is the last node.
 struct Topology {
   int columns = 0, rows = 0;  ///< of elements
 
@@ -34,8 +35,8 @@ struct Mesh {
   ElementPositions element(int column, int row) const;
 };
 
-/// A mesh under a surface: columns are straight from the floor to the surface, narrower towards the toe, where the
-/// material rolls over, and rows thinner towards the floor, where it shears.
+/// A mesh under a surface: columns are straight from the floor to the surface, narrower towards the toe,
+/// where the material rolls over, and rows thinner towards the floor, where it shears.
 Mesh make_mesh(const Topology&, const Surface&);
 
 /// A point in the square of an element.
@@ -43,8 +44,8 @@ struct Place {
   int column = 0, row = 0;
   double xi = 0.0, eta = 0.0;
 };
-/// Where a point lies in a mesh, searched from a place near it. A point outside belongs to the element that it is next
-/// to, at the nearest point of its square.
+/// Where a point lies in a mesh, searched from a place near it. A point outside belongs to the element that
+/// it is next to, at the nearest point of its square.
 Place locate(const Mesh&, const Point&, Place start);
 
 /// Fields on the nodes of one mesh, carried over to those of another over nearly the same body.

@@ -9,8 +9,8 @@ namespace flowrest::elements {
 namespace {
 
 [[noreturn]] void refuse(const scenes::Scene& scene, const std::string& what, const std::string& allowed) {
-  throw runs::RunError(fmt::format("{}: the finite elements do not compute {}; allowed: {}", scene.path.string(), what,
-                                   allowed));
+  throw runs::RunError(fmt::format("{}: the finite elements do not compute {}; allowed: {}",
+                                   scene.path.string(), what, allowed));
 }
 
 void check_apparatus(const scenes::Scene& scene) {
@@ -21,12 +21,14 @@ void check_apparatus(const scenes::Scene& scene) {
     refuse(scene, fmt::format("geometry.dimension = \"{}\"", scenes::to_string(dimension)),
            "\"axisymmetric\" or \"plane\"");
   if (scene.slump().mould_lift_velocity)
-    refuse(scene, "a mould that is lifted (geometry.mould_lift_velocity)", "a cone released at once, without that key");
+    refuse(scene, "a mould that is lifted (geometry.mould_lift_velocity)",
+           "a cone released at once, without that key");
 }
 
 void check_walls_and_forces(const scenes::Scene& scene) {
   if (scene.base.law == scenes::Wall::friction)
-    refuse(scene, fmt::format("a floor of friction {:g} (walls.base)", scene.base.friction), "\"no-slip\" or \"slip\"");
+    refuse(scene, fmt::format("a floor of friction {:g} (walls.base)", scene.base.friction),
+           "\"no-slip\" or \"slip\"");
   if (!(scene.forces.gravity > 0.0)) refuse(scene, "forces.gravity = 0", "above 0");
   if (!scene.forces.body_force.empty()) refuse(scene, "forces.body_force", "gravity alone");
 }

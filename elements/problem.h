@@ -3,8 +3,8 @@
 #include "laws/law.h"
 #include "scenes/scene.h"
 
-/// Finite elements as a referee between the solvers: an incompressible slump with a free surface, by a method that
-/// shares no code with either.
+/// Finite elements as a referee between the solvers: an incompressible slump with a free surface, by a method
+/// that shares no code with either.
 namespace flowrest::elements {
 
 enum class Symmetry { about_axis, plane };
@@ -32,7 +32,8 @@ struct Problem {
   bool is_rounded() const { return laws::can_rest(flow.law) && has_yield_stress(); }
 };
 
-/// @throws runs::RunError where the elements do not serve the scene: what stands in the way and what is allowed.
+/// @throws runs::RunError where the elements do not serve the scene: what stands in the way and what is
+/// allowed.
 Problem problem_of(const scenes::Scene&);
 
 }  // namespace flowrest::elements

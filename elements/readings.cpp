@@ -48,14 +48,15 @@ Reading Follower::at(double time) const {
 
 DepthProfile Follower::profile(double time) const {
   constexpr int points = 200;
-  const double share = share_of_step(time), reach_before = surface_before_.radius(), reach_now = slump_.surface().radius();
+  const double share = share_of_step(time), reach_before = surface_before_.radius(),
+               reach_now = slump_.surface().radius();
   DepthProfile profile;
   for (int i = points; i >= 0; --i) {
     // Closer towards the edge, where the depth falls steeply; the last just beyond it.
     const double x = static_cast<double>(i) / points, part = i > 0 ? 1.0 - x * x : 1.0 + 1e-9;
     profile.radius.push_back(part * std::lerp(reach_before, reach_now, share));
-    profile.depth.push_back(
-        std::lerp(surface_before_.depth(part * reach_before), slump_.surface().depth(part * reach_now), share));
+    profile.depth.push_back(std::lerp(surface_before_.depth(part * reach_before),
+                                      slump_.surface().depth(part * reach_now), share));
   }
   return profile;
 }

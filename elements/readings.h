@@ -6,10 +6,11 @@ namespace flowrest::elements {
 
 /// What is read off a slump's shape at one time.
 struct Reading {
-  double time = 0.0;                                      ///< s
-  double spread = 0.0, spread_half = 0.0, spread_double = 0.0;  ///< m, at the spread's depth, half and twice of it
-  double height = 0.0;                                    ///< m, at the centre
-  double volume = 0.0;                                    ///< m3
+  double time = 0.0;  ///< s
+  double spread = 0.0, spread_half = 0.0,
+         spread_double = 0.0;  ///< m, at the spread's depth, half and twice of it
+  double height = 0.0;         ///< m, at the centre
+  double volume = 0.0;         ///< m3
 };
 Reading reading_of(const Slump&);
 
@@ -18,9 +19,9 @@ struct DepthProfile {
   std::vector<double> radius, depth;
 };
 
-/// A slump followed from row to row of a record. Between its steps readings are interpolated linearly in time: a step
-/// is so short a part of the time gone by that this costs less than the step itself. Depths are interpolated at equal
-/// shares of the radius, so that a front stays as steep as it is.
+/// A slump followed from row to row of a record. Between its steps readings are interpolated linearly in
+/// time: a step is so short a part of the time gone by that this costs less than the step itself. Depths are
+/// interpolated at equal shares of the radius, so that a front stays as steep as it is.
 class Follower {
  public:
   Follower(const Problem&, const Resolution&);

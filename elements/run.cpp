@@ -25,11 +25,16 @@ constexpr double grid_factor = 1.5;
 /// Rounding of the rounded twin over that of the run.
 constexpr double rounding_factor = 4.0;
 
-/// Of one length: what the coarser twin says of grid and step, taken as of first order in both, and what the more
-/// rounded one says of the rounding, which is of first order. m
+/// Of one length: what the coarser twin says of grid and step, taken as of first order in both, and what the
+/// more rounded one says of the rounding, which is of first order. It never falls: where two runs cross they
+/// agree by chance. m
 struct Uncertainty {
   double grid = 0.0, rounding = 0.0;
   double sum() const { return grid + rounding; }
+  void grow_to(const Uncertainty& other) {
+    grid = std::max(grid, other.grid);
+    rounding = std::max(rounding, other.rounding);
+  }
 };
 
 /// A run and its twins, in step.
@@ -55,7 +60,8 @@ class Runs {
   Uncertainty uncertainty(double time, double Reading::*length) const {
     const double value = run_.at(time).*length, coarse = coarser_->at(time).*length;
     Uncertainty uncertainty{std::abs(value - coarse) / (grid_factor - 1.0), 0.0};
-    if (rounder_) uncertainty.rounding = std::abs(rounder_->at(time).*length - coarse) / (rounding_factor - 1.0);
+    if (rounder_)
+      uncertainty.rounding = std::abs(rounder_->at(time).*length - coarse) / (rounding_factor - 1.0);
     return uncertainty;
   }
 
@@ -81,7 +87,8 @@ std::string model_name(const Problem& problem) {
 
 class ElementRun {
  public:
-  ElementRun(const scenes::Scene& scene, const Problem& problem, const RunOptions& options, runs::RunFolder folder)
+  ElementRun(const scenes::Scene& scene, const Problem& problem, const RunOptions& options,
+             runs::RunFolder folder)
       : problem_(problem),
         options_(options),
         resolution_(resolution_of(problem, options.columns)),
@@ -94,9 +101,9 @@ class ElementRun {
 
   RunResult run() {
     try {
-      writer_.history_columns({"time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "height_mm", "volume_m3",
-                               "spread_uncertainty_mm", "spread_by_grid_mm", "spread_by_rounding_mm",
-                               "height_uncertainty_mm"});
+      writer_.history_columns({"time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "height_mm",
+                               "volume_m3", "spread_uncertainty_mm", "spread_by_grid_mm",
+                               "spread_by_rounding_mm", "height_uncertainty_mm"});
       return loop();
     } catch (const std::exception&) {
       const runs::Failure failure = runs::failure_at_hand(0.0);
@@ -112,11 +119,13 @@ class ElementRun {
     auto& info = writer_.info();
     info["model"] = model_name(problem_);
     info["label"] = "finite elements, " + model_name(problem_);
-    info["source"] = "two-dimensional momentum by finite elements, rigid and incompressible (elements/README.md)";
+    info["source"] =
+        "two-dimensional momentum by finite elements, rigid and incompressible (elements/README.md)";
     const auto resolution = [](const Resolution& r) {
       return Json{{"columns", r.columns}, {"rows", r.rows}, {"step_over_time", r.step_over_time}};
     };
-    info["elements"] = {{"run", resolution(resolution_)}, {"coarser", resolution(resolution_.coarser(grid_factor))}};
+    info["elements"] = {{"run", resolution(resolution_)},
+                        {"coarser", resolution(resolution_.coarser(grid_factor))}};
     if (problem_.is_rounded())
       info["elements"]["rounding_1_s"] = {{"run", resolution_.rounding},
                                           {"more_rounded", rounding_factor * resolution_.rounding}};
@@ -125,7 +134,8 @@ class ElementRun {
 
   RunResult loop() {
     for (double row = 0.0;; ++row) {
-      if (options_.interrupted()) return stop(runs::Status::interrupted, "interrupted; it can only be made anew");
+      if (options_.interrupted())
+        return stop(runs::Status::interrupted, "interrupted; it can only be made anew");
       const double time = time_of(row, problem_.history_interval, problem_.end);
       reach(time);
       add_row(time);
@@ -157,11 +167,12 @@ class ElementRun {
 
   void add_row(double time) {
     row_ = runs_.run().at(time);
-    uncertainty_ = runs_.uncertainty(time, &Reading::spread);
+    uncertainty_.grow_to(runs_.uncertainty(time, &Reading::spread));
+    of_height_.grow_to(runs_.uncertainty(time, &Reading::height));
     writer_.history(std::vector{time, 1e3 * row_.spread, 1e3 * row_.spread_half, 1e3 * row_.spread_double,
-                                1e3 * row_.height, row_.volume, 1e3 * uncertainty_.sum(), 1e3 * uncertainty_.grid,
-                                1e3 * uncertainty_.rounding,
-                                1e3 * runs_.uncertainty(time, &Reading::height).sum()});
+                                1e3 * row_.height, row_.volume, 1e3 * uncertainty_.sum(),
+                                1e3 * uncertainty_.grid, 1e3 * uncertainty_.rounding,
+                                1e3 * of_height_.sum()});
     progress_.update(time, fmt::format("t = {:.2f} s, {}", time, shown()));
   }
 
@@ -188,10 +199,10 @@ class ElementRun {
   RunResult stop(runs::Status status, const std::string& reason) {
     summarise();
     writer_.finish(status, reason, "sound");
-    progress_.finish(fmt::format("{} at {:.2f} s, {}; {:.1f} CPU s", runs::to_string(status), row_.time, shown(),
-                                 writer_.info()["cpu_s"].get<double>()));
-    return {status, fmt::format("{}: {} at {:g} s, {}", writer_.info()["label"].get<std::string>(), shown(), row_.time,
-                                runs::shown_length("centre", row_.height, problem_.spread_depth))};
+    progress_.finish(fmt::format("{} at {:.2f} s, {}; {:.1f} CPU s", runs::to_string(status), row_.time,
+                                 shown(), writer_.info()["cpu_s"].get<double>()));
+    return {status, fmt::format("{}: {} at {:g} s, {}", writer_.info()["label"].get<std::string>(), shown(),
+                                row_.time, runs::shown_length("centre", row_.height, problem_.spread_depth))};
   }
 
   Problem problem_;
@@ -202,7 +213,7 @@ class ElementRun {
   FieldWriter fields_;
   runs::Progress progress_;
   Reading row_;
-  Uncertainty uncertainty_;
+  Uncertainty uncertainty_, of_height_;          ///< of the spread, of the height
   double fields_made_ = 0.0, last_field_ = 0.0;  ///< their number; s
   double profiles_made_ = 0.0;
   double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
@@ -211,11 +222,11 @@ class ElementRun {
 }  // namespace
 
 Resolution resolution_of(const Problem& problem, int columns) {
-  constexpr double standard_columns = 45.0, creep_strain = 6e-3, rounding_over_rate = 1e-3;
+  constexpr double standard_columns = 60.0, creep_strain = 6e-3, rounding_over_rate = 1e-3;
   Resolution resolution;
   resolution.columns = columns;
-  resolution.rows = std::max(2, static_cast<int>(std::lround(8.0 * columns / standard_columns)));
-  resolution.step_over_time = 0.025 * standard_columns / columns;
+  resolution.rows = std::max(2, static_cast<int>(std::lround(6.0 * columns / standard_columns)));
+  resolution.step_over_time = 0.03 * standard_columns / columns;
   const auto& material = problem.flow.parameters;
   resolution.rounding = std::min(creep_strain / problem.end,
                                  rounding_over_rate * material.yield_stress / material.plastic_viscosity);

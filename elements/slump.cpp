@@ -55,7 +55,9 @@ double Slump::longest_step() const {
 /// The axis lets nothing across, the floor nothing through; one without slip holds what lies on it.
 std::vector<char> Slump::held_at_walls() const {
   std::vector<char> held(static_cast<std::size_t>(2 * topology_.nodes()), 0);
-  const auto hold = [&](int node, int component) { held[static_cast<std::size_t>(2 * node + component)] = 1; };
+  const auto hold = [&](int node, int component) {
+    held[static_cast<std::size_t>(2 * node + component)] = 1;
+  };
   for (int j = 0; j < topology_.column_nodes(); ++j) hold(topology_.node(0, j), 0);
   for (int i = 0; i <= 2 * topology_.columns; ++i) {
     hold(topology_.node(i, 0), 1);
@@ -64,8 +66,8 @@ std::vector<char> Slump::held_at_walls() const {
   return held;
 }
 
-/// The time derivative in the middle of the step, through the middles of those before it: of second order, of first
-/// order from rest.
+/// The time derivative in the middle of the step, through the middles of those before it: of second order, of
+/// first order from rest.
 FlowTask Slump::task_of(double step) const {
   const double since = time_ + 0.5 * step - middle_[0], before = middle_[0] - middle_[1];
   FlowTask task;
@@ -81,7 +83,8 @@ FlowTask Slump::task_of(double step) const {
   return task;
 }
 
-/// Holds every node of the surface that the step would carry through the floor to the speed that brings it onto it.
+/// Holds every node of the surface that the step would carry through the floor to the speed that brings it
+/// onto it.
 /// @return whether there were any that were not held already
 bool Slump::land(double step, Tried& tried, FlowTask& task) const {
   bool any = false;
@@ -120,13 +123,14 @@ std::vector<Point> Slump::moved_markers(double step, const Field& velocity) cons
   std::size_t column = 0;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const double length = surface_.lengths()[i];
-    while (column + 1 < static_cast<std::size_t>(topology_.columns) && length > mesh_.surface[2 * column + 2]) ++column;
+    while (column + 1 < static_cast<std::size_t>(topology_.columns) && length > mesh_.surface[2 * column + 2])
+      ++column;
     const double begin = mesh_.surface[2 * column], end = mesh_.surface[2 * column + 2];
     const double xi = std::clamp(2.0 * (length - begin) / (end - begin) - 1.0, -1.0, 1.0);
     const NodeValues share = shape_at(xi, 1.0).value;
     for (int k = 0; k < 3; ++k)
-      moved[i] += step * share[3 * k + 2] *
-                  velocity.col(topology_.surface_node(2 * static_cast<int>(column) + k));
+      moved[i] +=
+          step * share[3 * k + 2] * velocity.col(topology_.surface_node(2 * static_cast<int>(column) + k));
   }
   moved.front().x() = 0.0;
   return moved;
@@ -167,10 +171,10 @@ void Slump::step(double target) {
     }
     ++record_.repeated;
     if (halvings == most_halvings)
-      throw runs::NumericsError(
-          fmt::format("at {:.6g} s no step is short enough for the elements: the mesh folds, or the minimisation does "
-                      "not converge",
-                      time_));
+      throw runs::NumericsError(fmt::format(
+          "at {:.6g} s no step is short enough for the elements: the mesh folds, or the minimisation does "
+          "not converge",
+          time_));
     step *= 0.5;
   }
   if (surface_.radius() > problem_.domain_radius)

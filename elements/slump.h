@@ -8,9 +8,10 @@ namespace flowrest::elements {
 
 /// How finely a slump is computed.
 struct Resolution {
-  int columns = 60, rows = 10;   ///< of elements
-  double step_over_time = 0.02;  ///< a step, of the time since the release and half that of a fall from the cone's height
-  double rounding = 1e-4;        ///< 1/s, at which a law that can rest is rounded
+  int columns = 60, rows = 6;  ///< of elements
+  double step_over_time =
+      0.03;  ///< a step, of the time since the release and half that of a fall from the cone's height
+  double rounding = 1e-4;  ///< 1/s, at which a law that can rest is rounded
   /// The same with elements and steps `factor` times as large.
   Resolution coarser(double factor) const;
 };
@@ -19,13 +20,14 @@ struct Resolution {
 struct StepRecord {
   int steps = 0, iterations = 0, repeated = 0;
   double largest_divergence = 0.0;  ///< 1/s
-  double volume_corrected = 0.0;    ///< sum of what the steps' corrections of volume changed it by, of the volume
+  double volume_corrected =
+      0.0;  ///< sum of what the steps' corrections of volume changed it by, of the volume
 };
 
-/// A slump as it spreads. Velocities live in the middle of steps, in the shape that the body has there; so positions are
-/// second order in the step. Inertia is taken from the two velocities before (BDF2). Nodes of the surface that would
-/// pass through the floor come to lie on it and are held there. After each step the surface has moved with the
-/// material, and a new mesh is laid under it.
+/// A slump as it spreads. Velocities live in the middle of steps, in the shape that the body has there; so
+/// positions are second order in the step. Inertia is taken from the two velocities before (BDF2). Nodes of
+/// the surface that would pass through the floor come to lie on it and are held there. After each step the
+/// surface has moved with the material, and a new mesh is laid under it.
 class Slump {
  public:
   Slump(const Problem&, const Resolution&);

@@ -15,7 +15,8 @@ Surface::Surface(std::vector<Point> markers) : marker_(std::move(markers)), leng
 }
 
 Surface Surface::of_cone(const Problem& problem, int markers) {
-  const Point middle(0.0, problem.height), edge(problem.radius_top, problem.height), foot(problem.radius_bottom, 0.0);
+  const Point middle(0.0, problem.height), edge(problem.radius_top, problem.height),
+      foot(problem.radius_bottom, 0.0);
   const double top = (edge - middle).norm(), side = (foot - edge).norm();
   const int on_top = std::max(1, static_cast<int>(std::lround(markers * top / (top + side))));
   std::vector<Point> line;
@@ -45,14 +46,16 @@ double Surface::volume(Symmetry symmetry) const {
   for (std::size_t i = 1; i < marker_.size(); ++i) {
     const Point &a = marker_[i - 1], &b = marker_[i];
     const double fall = a.y() - b.y();
-    sum += symmetry == Symmetry::plane ? fall * (a.x() + b.x())
-                                       : fall * std::numbers::pi / 3.0 * (a.x() * a.x() + a.x() * b.x() + b.x() * b.x());
+    sum += symmetry == Symmetry::plane
+               ? fall * (a.x() + b.x())
+               : fall * std::numbers::pi / 3.0 * (a.x() * a.x() + a.x() * b.x() + b.x() * b.x());
   }
   return sum;
 }
 
 double Surface::depth(double radius) const {
-  // Every crossing outwards bounds the material from above, every one inwards from below; the floor bounds the rest.
+  // Every crossing outwards bounds the material from above, every one inwards from below; the floor bounds
+  // the rest.
   double sum = 0.0;
   for (std::size_t i = 1; i < marker_.size(); ++i) {
     const Point &a = marker_[i - 1], &b = marker_[i];

@@ -6,8 +6,8 @@
 
 namespace flowrest::elements {
 
-/// The free surface: a line of markers from the axis to the toe on the floor, which move with the material. Between
-/// them it is straight. Everything that is read off a slump's shape is read off this line.
+/// The free surface: a line of markers from the axis to the toe on the floor, which move with the material.
+/// Between them it is straight. Everything that is read off a slump's shape is read off this line.
 class Surface {
  public:
   explicit Surface(std::vector<Point> markers);
@@ -37,8 +37,8 @@ class Surface {
   std::vector<double> length_;
 };
 
-/// What has come down to the floor is floor: the line is cut where it first comes within `tolerance` (m) of it, coming
-/// from the axis, and ends there, on the floor.
+/// What has come down to the floor is floor: the line is cut where it first comes within `tolerance` (m) of
+/// it, coming from the axis, and ends there, on the floor.
 Surface landed(const std::vector<Point>& markers, double tolerance);
 /// The same surface with heights multiplied so that its volume is `volume`.
 Surface with_volume(const Surface&, Symmetry, double volume);
