@@ -98,7 +98,7 @@ Inverse invert(const Mesh& mesh, const Point& point, const Place& start) {
 }  // namespace
 
 Place locate(const Mesh& mesh, const Point& point, Place start) {
-  constexpr int most_elements = 12;
+  constexpr int most_elements = 100;
   constexpr double inside = 1e-9;
   Inverse best{{}, 1e9};
   for (int walked = 0; walked < most_elements; ++walked) {
@@ -123,7 +123,8 @@ std::vector<Field> transfer(const Mesh& from, const std::vector<Field>& fields, 
     for (int j = 0; j < topology.column_nodes(); ++j) {
       const int node = topology.node(i, j);
       Place start{std::min(i / 2, topology.columns - 1), std::min(j / 2, topology.rows - 1), 0.0, 0.0};
-      start.xi = i - 2 * start.column - 1.0;
+      // At the toe itself there is no way to begin: every place there is the same one.
+      start.xi = std::min(i - 2 * start.column - 1.0, 0.9);
       start.eta = j - 2 * start.row - 1.0;
       const Place place = locate(from, to.position.col(node), start);
       const NodeValues share = shape_at(place.xi, place.eta).value;
