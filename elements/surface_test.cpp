@@ -55,6 +55,11 @@ TEST(Surface, EndsWhereItHasComeDownToTheFloor) {
   EXPECT_NEAR(on_it.toe().x(), 0.12, 1e-12);
 }
 
+TEST(Surface, ClosesASlimWedgeUnderItsFrontAndKeepsAWideOne) {
+  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.001}, {0.1, 0.0}}, 1e-6).toe().x(), 0.12, 1e-12);
+  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.002}, {0.1, 0.0}}, 1e-6).toe().x(), 0.1, 1e-12);
+}
+
 TEST(Surface, IsGivenAVolumeByItsHeights) {
   const Surface cone = Surface::of_cone(roussel(), 100);
   const double volume = 1.001 * cone.volume(Symmetry::about_axis);
