@@ -190,6 +190,7 @@ class ElementRun {
     info["steps"] = record.steps;
     info["elements"]["iterations"] = record.iterations;
     info["elements"]["repeated_steps"] = record.repeated;
+    info["elements"]["fronts_let_down"] = record.closed;
     info["elements"]["largest_divergence_1_s"] = record.largest_divergence;
     info["elements"]["volume_corrected"] = record.volume_corrected;
     info["wall_s"] = seconds_now() - wall_begin_;

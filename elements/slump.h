@@ -19,6 +19,7 @@ struct Resolution {
 /// Counters of what a slump's steps have come to.
 struct StepRecord {
   int steps = 0, iterations = 0, repeated = 0;
+  int closed = 0;  ///< wedges of air under the front that were wider than usual and closed to go on
   double largest_divergence = 0.0;  ///< 1/s
   double volume_corrected =
       0.0;  ///< sum of what the steps' corrections of volume changed it by, of the volume
@@ -45,7 +46,6 @@ class Slump {
   const FlowOutcome& outcome() const { return outcome_; }
   const StepRecord& record() const { return record_; }
   const Problem& problem() const { return problem_; }
-  double kinetic_energy() const;  ///< J, of the whole body, of the last step's velocity
 
  private:
   struct Tried;
@@ -56,6 +56,8 @@ class Slump {
   bool land(double step, Tried&, FlowTask&) const;
   std::vector<Point> moved_markers(double step, const Field& velocity) const;
   void accept(double step, const Tried&);
+  void lay_mesh(const Surface&, const Mesh& carried, const std::vector<Field>& velocities);
+  bool close_front();
 
   Problem problem_;
   Resolution resolution_;

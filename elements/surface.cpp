@@ -82,15 +82,12 @@ double Surface::spread(double threshold) const {
   return runs::nothing;
 }
 
-Surface landed(const std::vector<Point>& markers, double tolerance) {
-  // 4 degrees. A front that rolls meets the floor in a cusp; what is closed of it is a ten thousandth of what
-  // advances.
-  constexpr double slimmest_wedge = 0.07;
+Surface landed(const std::vector<Point>& markers, double tolerance, double wedge) {
   const double toe = markers.back().x();
   std::vector<Point> line = {markers.front()};
   for (std::size_t i = 1; i < markers.size(); ++i) {
     const Point &before = line.back(), &here = markers[i];
-    if (here.y() > tolerance + slimmest_wedge * std::max(0.0, here.x() - toe)) {
+    if (here.y() > tolerance + wedge * std::max(0.0, here.x() - toe)) {
       line.push_back(here);
       continue;
     }

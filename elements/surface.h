@@ -38,9 +38,9 @@ class Surface {
 };
 
 /// What has come down to the floor is floor: the line is cut where it first comes within `tolerance` (m) of
-/// it, coming from the axis, and ends there, on the floor. A slim wedge of air between a front and the floor
-/// beyond the toe that it had is closed, too.
-Surface landed(const std::vector<Point>& markers, double tolerance);
+/// it, coming from the axis, and ends there, on the floor. A wedge of air between a front and the floor
+/// beyond the toe that it had is closed, too, where its height over its length is less than `wedge`.
+Surface landed(const std::vector<Point>& markers, double tolerance, double wedge);
 /// The same surface with heights multiplied so that its volume is `volume`.
 Surface with_volume(const Surface&, Symmetry, double volume);
 

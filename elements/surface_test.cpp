@@ -47,17 +47,20 @@ TEST(Surface, WhereAFrontIsUprightItsPlaceIsTheSpread) {
 }
 
 TEST(Surface, EndsWhereItHasComeDownToTheFloor) {
-  const Surface below = landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, -0.02}, {0.11, 0.001}, {0.1, 0.0}}, 1e-6);
+  const Surface below =
+      landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, -0.02}, {0.11, 0.001}, {0.1, 0.0}}, 1e-6, 0.0);
   ASSERT_EQ(below.markers().size(), 3U);
   EXPECT_NEAR(below.toe().x(), 0.11, 1e-12);
   EXPECT_EQ(below.toe().y(), 0.0);
-  const Surface on_it = landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 1e-7}, {0.1, 0.0}}, 1e-6);
+  const Surface on_it = landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 1e-7}, {0.1, 0.0}}, 1e-6, 0.0);
   EXPECT_NEAR(on_it.toe().x(), 0.12, 1e-12);
 }
 
 TEST(Surface, ClosesASlimWedgeUnderItsFrontAndKeepsAWideOne) {
-  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.001}, {0.1, 0.0}}, 1e-6).toe().x(), 0.12, 1e-12);
-  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.002}, {0.1, 0.0}}, 1e-6).toe().x(), 0.1, 1e-12);
+  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.001}, {0.1, 0.0}}, 1e-6, 0.07).toe().x(), 0.12,
+              1e-12);
+  EXPECT_NEAR(landed({{0.0, 0.03}, {0.1, 0.02}, {0.12, 0.002}, {0.1, 0.0}}, 1e-6, 0.07).toe().x(), 0.1,
+              1e-12);
 }
 
 TEST(Surface, IsGivenAVolumeByItsHeights) {
