@@ -268,6 +268,14 @@ TEST_F(ComparisonTest, AgainstTheExactProfiles) {
   EXPECT_THAT(comparison.fair, HasSubstr("quasi-static"));
 }
 
+TEST_F(ComparisonTest, ASolutionInTimeIsNotCalledQuasiStatic) {
+  write_arrested();
+  const auto scene = scenes::load_scene("roussel-slump", {{"time.end=1"}, {}});
+  exact::write_film_run(scene, folder / "film", true, runs::Replace::anything);
+  EXPECT_THAT(text(compared()),
+              AllOf(HasSubstr("Solutions in time end at "), Not(HasSubstr("quasi-static solutions"))));
+}
+
 TEST_F(ComparisonTest, ANoisyRunIsCalledSo) {
   write_arrested();
   synthetic::Slump noisy = creeping(4e-3);

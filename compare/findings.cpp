@@ -459,18 +459,19 @@ void describe_funnel(Comparison& comparison) {
 
 /// A slump, or what runs along a box or a tank.
 void describe_growth(Comparison& comparison) {
-  std::vector<std::string> exact;
+  std::vector<std::string> arrested, in_time;
   for (const RunView& view : comparison.runs) {
     if (view.gauge.empty()) continue;
     if (view.exact) {
       const Series height = column(view.run, "end_height_mm");
-      exact.push_back(
-          fmt::format("{}{} ({})", end_of(comparison, view),
-                      !height.empty() && height.value.back() > 0.0
-                          ? fmt::format(", {} high at the end",
-                                        words::spread(1e-3 * height.value.back(), comparison.grain))
-                          : "",
-                      view.label));
+      (view.held ? arrested : in_time)
+          .push_back(
+              fmt::format("{}{} ({})", end_of(comparison, view),
+                          !height.empty() && height.value.back() > 0.0
+                              ? fmt::format(", {} high at the end",
+                                            words::spread(1e-3 * height.value.back(), comparison.grain))
+                              : "",
+                          view.label));
       continue;
     }
     if (comparison.kind != scenes::Kind::slump)
@@ -487,8 +488,10 @@ void describe_growth(Comparison& comparison) {
   tell(comparison, Topic::context, flocculation_sentence(comparison));
   tell(comparison, Topic::context, edge_sentence(comparison));
   tell(comparison, Topic::context, uncertainty_sentence(comparison));
-  if (!exact.empty())
-    tell(comparison, Topic::context, fmt::format("The quasi-static solutions give {}.", listed(exact)));
+  if (!arrested.empty())
+    tell(comparison, Topic::context, fmt::format("The quasi-static solutions give {}.", listed(arrested)));
+  if (!in_time.empty())
+    tell(comparison, Topic::context, fmt::format("Solutions in time end at {}.", listed(in_time)));
 }
 
 std::string duct_sentence(const RunView& view) {
