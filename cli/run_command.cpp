@@ -136,6 +136,18 @@ std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, co
   const bool one_thread =
       share_cores && scene.mpm.threads == 0 && !scenes::gives_key(options.set, "mpm.threads");
   for (const auto model : scene.runs.mpm) add("mpm", model, one_thread);
+#ifdef FLOWREST_HAS_COMPARE
+  if (scene.runs.elements) {
+    // One that was interrupted is made anew.
+    Job job;
+    job.name = scene.name + " elements";
+    job.directory = folder / "elements";
+    job.arguments = {"exact", named, "--elements", "-o", job.directory.string()};
+    if (options.force) job.arguments.push_back("--force");
+    add_settings(job.arguments, options.set);
+    jobs.push_back(std::move(job));
+  }
+#endif
   return jobs;
 }
 
@@ -352,10 +364,10 @@ std::vector<scenes::Scene> scenes_of(const RunCommandOptions& options) {
     }
 #endif
     scenes::check_model_has_effect(scene, options.set);
-    if (scene.runs.mpm.empty() && scene.runs.foam.empty() && !scene.runs.exact)
-      throw scenes::SceneError(
-          fmt::format("{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true }}",
-                      scene.path.string()));
+    if (scene.runs.mpm.empty() && scene.runs.foam.empty() && !scene.runs.exact && !scene.runs.elements)
+      throw scenes::SceneError(fmt::format(
+          "{}: names no runs; allowed: runs = {{ mpm = [...], foam = [...], exact = true, elements = true }}",
+          scene.path.string()));
   }
   return all;
 }

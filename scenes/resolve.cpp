@@ -11,7 +11,8 @@ namespace flowrest::scenes {
 namespace {
 
 void resolve_runs(const Given& given, Scene& scene) {
-  const bool named = given.gives("runs.mpm") || given.gives("runs.foam") || given.gives("runs.exact");
+  const bool named = given.gives("runs.mpm") || given.gives("runs.foam") || given.gives("runs.exact") ||
+                     given.gives("runs.elements");
   if (!named) scene.runs.mpm = {scene.material.model};
 }
 

@@ -165,6 +165,7 @@ struct Runs {
   std::vector<Model> mpm;
   std::vector<Model> foam;
   bool exact = false;
+  bool elements = false;  ///< the referee of a slump, by finite elements
   bool operator==(const Runs&) const = default;
 };
 

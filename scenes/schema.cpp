@@ -57,6 +57,8 @@ std::vector<Key> general_keys() {
           .otherwise("none"),
       boolean("runs.exact", AT(draft.scene.runs.exact),
               "whether `flowrest run` adds the exact or asymptotic solution"),
+      boolean("runs.elements", AT(draft.scene.runs.elements),
+              "whether `flowrest run` adds a slump computed by finite elements, as a referee"),
   };
 }
 

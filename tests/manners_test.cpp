@@ -38,7 +38,7 @@ class Manners : public testing::Test {
     fs::create_directories(folder);
     std::ofstream(folder / "my scene.toml")
         << "extends = \"roussel-slump\"\n"
-           "runs = { mpm = [\"elasto-viscoplastic\", \"papanastasiou\"], foam = [] }\n";
+           "runs = { mpm = [\"elasto-viscoplastic\", \"papanastasiou\"], foam = [], elements = false }\n";
   }
 
   std::unique_ptr<runs::Process> start(const std::vector<std::string>& arguments) {
