@@ -146,7 +146,7 @@ std::string gauge_csv(const Comparison& comparison) {
 }
 
 std::string profiles_csv(const Comparison& comparison) {
-  std::string text = header(comparison, comparison.kind == scenes::Kind::slump  ? "time_s,r_m"
+  std::string text = header(comparison, comparison.radial                       ? "time_s,r_m"
                                         : comparison.kind == scenes::Kind::duct ? "time_s,y_m"
                                                                                 : "time_s,x_m");
   for (const double time : comparison.frames) {

@@ -467,7 +467,7 @@ class CaseRun {
     double cpu = 0.0;
     for (const auto& [program, seconds] : cpu_by_program_) cpu += seconds;
     info["laws"] = plug_in_ ? "plug-in" : "built-in";
-    info["time_reached_s"] = time();
+    info["simulated_s"] = time();
     info["steps"] = steps_;
     info["wall_s"] = wall;
     info["cpu_s"] = cpu;
@@ -547,7 +547,7 @@ RunOutcome outcome_of(const Json& info) {
   outcome.status = *runs::status_from(info.value("status", ""));
   outcome.reason = info.value("reason", "");
   outcome.verdict = info.value("verdict", "");
-  outcome.time = info.value("time_reached_s", 0.0);
+  outcome.time = runs::simulated_time(info);
   for (const auto& gauge : info.value("gauges", Json::array()))
     outcome.gauges[gauge.get<std::string>()] = info.value(gauge.get<std::string>(), Json());
   return outcome;

@@ -16,6 +16,7 @@
 #include "runs/command.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
+#include "scenes/pieces.h"
 #include "scenes/plausibility.h"
 
 namespace flowrest::runs {
@@ -41,20 +42,6 @@ std::string read_text(const fs::path& path) {
 
 /// A number as CSV has it; what reads nothing is an empty cell.
 std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{:.17g}", value); }
-
-std::string profile_header(scenes::Kind kind) {
-  switch (kind) {
-    case scenes::Kind::slump:
-      return "time_s,r_m,depth_m";
-    case scenes::Kind::duct:
-      return "time_s,y_m,velocity_m_s";
-    case scenes::Kind::l_box:
-    case scenes::Kind::v_funnel:
-    case scenes::Kind::dam_break:
-      return "time_s,x_m,depth_m";
-  }
-  throw std::logic_error("a kind of scene without profiles");
-}
 
 /// What runs leave beside run.json. Nothing else in a run directory is ever removed.
 void remove_outputs(const fs::path& directory) {
@@ -121,6 +108,12 @@ std::optional<Json> read_info(const fs::path& path, std::string& problem) {
   return info;
 }
 
+double simulated_time(const Json& info) {
+  for (const char* key : {"simulated_s", "time_reached_s"})
+    if (const auto found = info.find(key); found != info.end() && found->is_number()) return *found;
+  return 0.0;
+}
+
 void write_atomically(const fs::path& path, const std::string& text) {
   const fs::path partial = path.string() + ".part";
   std::error_code error;
@@ -136,13 +129,13 @@ void write_atomically(const fs::path& path, const std::string& text) {
   }
 }
 
-RunWriter::RunWriter(FolderLock lock, scenes::Kind kind, Json info)
-    : lock_(std::move(lock)), info_(std::move(info)), profile_header_(profile_header(kind)) {
+RunWriter::RunWriter(FolderLock lock, std::string profile_header, Json info)
+    : lock_(std::move(lock)), info_(std::move(info)), profile_header_(std::move(profile_header)) {
   lock_.keep_room();
 }
 
 RunWriter::RunWriter(RunFolder folder)
-    : RunWriter(std::move(folder.lock_), folder.kind_, std::move(folder.info_)) {
+    : RunWriter(std::move(folder.lock_), std::move(folder.profile_header_), std::move(folder.info_)) {
   // First the new run.json: killed at any moment, the folder stays recognisable, can be gone on with and no
   // old status vouches for new data.
   write();
@@ -162,12 +155,12 @@ RunWriter RunWriter::resume(FolderLock lock, const scenes::Scene& scene, const C
   std::string problem = "it is missing";
   auto info = read_info(path, problem);
   if (!info) throw RunError(fmt::format("{}: cannot be resumed: {}", path.string(), problem));
-  RunWriter writer(std::move(lock), scene.kind(), std::move(*info));
+  RunWriter writer(std::move(lock), scenes::pieces_of(scene).profile.header(), std::move(*info));
   if (const std::string there = header_of_csv(directory / "profiles.csv");
       !there.empty() && there != writer.profile_header_)
     throw RunError(fmt::format("{}:1: the columns are '{}', a {} writes '{}'",
-                               (directory / "profiles.csv").string(), there, scenes::to_string(scene.kind()),
-                               writer.profile_header_));
+                               (directory / "profiles.csv").string(), there,
+                               scenes::name_of(scene.geometry.apparatus), writer.profile_header_));
   writer.info_["status"] = to_string(Status::running);
   writer.info_["reason"] = "";
   writer.info_["verdict"] = "";

@@ -33,6 +33,10 @@ std::optional<Status> status_from(const std::string&);
 /// is no such file.
 std::optional<nlohmann::ordered_json> read_info(const std::filesystem::path&, std::string& problem);
 
+/// The time that a run has reached, s; 0 where its run.json does not say. Runs by OpenFOAM of version 0.1.0
+/// call it `time_reached_s`.
+double simulated_time(const nlohmann::ordered_json& info);
+
 /// Replaces a file atomically: a reader sees the old text or the new one, never a part.
 /// @throws RunError where it cannot be written, MachineError where that is the machine's fault.
 void write_atomically(const std::filesystem::path&, const std::string& text);
@@ -75,8 +79,9 @@ class RunWriter {
   /// The same by column: the first row names them.
   void history(const Row&);
 
-  /// Appends one profile, each time once: rows (time, coordinate, value). The columns follow the scene's
-  /// kind: slump time_s,r_m,depth_m; duct time_s,y_m,velocity_m_s; others time_s,x_m,depth_m.
+  /// Appends one profile, each time once: rows (time, coordinate, value). The columns are those of
+  /// the pieces' profile axis: time_s,r_m,depth_m about an axis, time_s,x_m,depth_m along a plane or a channel,
+  /// time_s,y_m,velocity_m_s between plates.
   void profile(double time, std::span<const double> coordinate, std::span<const double> value);
 
   std::optional<double> last_profile() const { return last_profile_; }  ///< s
@@ -94,7 +99,7 @@ class RunWriter {
   const std::filesystem::path& directory() const { return lock_.folder(); }
 
  private:
-  RunWriter(FolderLock, scenes::Kind, nlohmann::ordered_json info);
+  RunWriter(FolderLock, std::string profile_header, nlohmann::ordered_json info);
   std::filesystem::path file(const char* name) const { return directory() / name; }
   void cut_back_to(const Continuation&);
 

@@ -159,6 +159,27 @@ TEST_F(RunDirectory, ResumesAtATime) {
   EXPECT_EQ(run.info["resumed_at_s"], nlohmann::ordered_json::array({0.4}));
 }
 
+TEST_F(RunDirectory, ProfilesAreAlongTheAxisOfTheirApparatus) {
+  const auto header = [&](const std::string& name, const std::vector<std::string>& set) {
+    RunWriter writer(folder / "run", scenes::load_scene(name, {set, {}}), "mpm", Replace::anything);
+    writer.profile(0.0, std::vector{0.005}, std::vector{0.3});
+    std::string text = text_of(folder / "run" / "profiles.csv");
+    return text.substr(0, text.find('\n'));
+  };
+  EXPECT_EQ(header("roussel-slump", {}), "time_s,r_m,depth_m");
+  EXPECT_EQ(header("roussel-slump", {"geometry.dimension=quarter", "mpm.particles_per_cell=8"}),
+            "time_s,r_m,depth_m");
+  EXPECT_EQ(header("roussel-slump", {"geometry.dimension=plane"}), "time_s,x_m,depth_m") << "no radius there";
+  EXPECT_EQ(header("poiseuille-100", {}), "time_s,y_m,velocity_m_s");
+  EXPECT_EQ(header("mix-a-lbox-sf0", {}), "time_s,x_m,depth_m");
+}
+
+TEST_F(RunDirectory, TheTimeReachedHasOneNameAndItsOldOneIsRead) {
+  EXPECT_EQ(simulated_time({{"simulated_s", 2.5}}), 2.5);
+  EXPECT_EQ(simulated_time({{"time_reached_s", 1.5}}), 1.5) << "OpenFOAM's runs of version 0.1.0";
+  EXPECT_EQ(simulated_time(nlohmann::ordered_json::object()), 0.0);
+}
+
 TEST_F(RunDirectory, EveryTimeIsThereOnce) {
   write_run(folder / "run", Status::interrupted);
   RunWriter writer = RunWriter::resume(folder / "run", scene, {0.4, 0.4, 0.0});

@@ -10,6 +10,7 @@
 #include "runs/command.h"
 #include "runs/gauges.h"
 #include "runs/run_directory.h"
+#include "scenes/pieces.h"
 #include "scenes/plausibility.h"
 
 namespace flowrest::runs {
@@ -26,7 +27,10 @@ Json bearing_on(const std::string& solver, Json settings) {
   for (const char* table : {"mpm", "foam"})
     if (solver != table) settings.erase(table);
   if (settings.contains("mpm")) settings["mpm"].erase("threads");
-  if (settings.contains("foam") && settings.value("kind", "") != "slump")
+  // Only the steps of what spreads from a middle may grow.
+  const scenes::Apparatus* apparatus = scenes::apparatus_named(settings.value("kind", ""));
+  if (settings.contains("foam") &&
+      (!apparatus || scenes::main_gauge_of(*apparatus) != scenes::MainGauge::spread))
     settings["foam"].erase("step_growth");
   if (settings.contains("material")) {
     Json& material = settings["material"];
@@ -82,7 +86,7 @@ Json first_info(const scenes::Scene& scene, const std::string& solver, const Jso
                {"format_version", run_format_version},
                {"title", scene.title},
                {"scene_name", scene.name},
-               {"kind", scenes::to_string(scene.kind())},
+               {"kind", scenes::name_of(scene.geometry.apparatus)},
                {"solver", solver},
                {"model", scenes::to_string(scene.material.model)},
                {"status", to_string(Status::running)},
@@ -186,7 +190,9 @@ RunFolder::RunFolder(const fs::path& directory, const scenes::Scene& scene, cons
 
 RunFolder::RunFolder(FolderLock lock, const scenes::Scene& scene, const std::string& solver, Replace replace,
                      Json beside)
-    : lock_(std::move(lock)), kind_(scene.kind()), info_(first_info(scene, solver, beside)) {
+    : lock_(std::move(lock)),
+      profile_header_(scenes::pieces_of(scene).profile.header()),
+      info_(first_info(scene, solver, beside)) {
   const std::string folder = lock_.folder().string();
   Found found = find_in(lock_.folder(), info_, beside);
   if (found.standing == Standing::foreign)

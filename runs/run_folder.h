@@ -70,7 +70,7 @@ class RunFolder {
  private:
   friend class RunWriter;
   FolderLock lock_;
-  scenes::Kind kind_;
+  std::string profile_header_;
   nlohmann::ordered_json info_, earlier_;
   bool finished_ = false;
 };

@@ -82,6 +82,8 @@ struct ProfileAxis {
   Of of = Of::depth;
   std::string coordinate;  ///< of profiles.csv: "r_m", "x_m", "y_m"
   std::string value() const { return of == Of::depth ? "depth_m" : "velocity_m_s"; }
+  /// The columns of profiles.csv.
+  std::string header() const { return "time_s," + coordinate + "," + value(); }
   bool radial() const { return coordinate == "r_m"; }
 };
 

@@ -46,7 +46,7 @@ Gauges gauges_of_body(const Scene& scene) {
 }
 
 MainGauge Scene::main_gauge() const {
-  return std::visit([](const auto& a) { return a.main_gauge; }, geometry.apparatus);
+  return main_gauge_of(geometry.apparatus);
 }
 
 double Scene::body_height() const {

@@ -11,6 +11,7 @@
 #include "mpm/solver/settings.h"
 #include "runs/folder.h"
 #include "runs/run_directory.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::mpm {
 
@@ -44,7 +45,7 @@ SnapshotWriter::SnapshotWriter(const std::filesystem::path& directory, const sce
                                double resume_time)
     : directory_(directory),
       cell_(cell_size(scene)),
-      duct_(scene.kind() == scenes::Kind::duct),
+      upright_(scene.spatial_dimension() == 2 && scenes::pieces_of(scene).free_surface),
       dimension_(scene.spatial_dimension()) {
   std::ifstream file(directory_ / "particles.hdf.series");
   const auto series = nlohmann::json::parse(file, nullptr, false);
@@ -95,9 +96,8 @@ void SnapshotWriter::write(double time, Solver& solver) {
     for (std::size_t i = 0; i < batch.count; ++i)
       for (auto [to, from] : {std::pair{&points, &batch.position}, std::pair{&velocity, &batch.velocity}}) {
         const auto at = [&, from = from](std::size_t axis) { return static_cast<float>((*from)[axis][i]); };
-        // A slump's section stands upright, so that it can be laid over a three-dimensional run.
-        const bool upright = dimension_ == 2 && !duct_;
-        for (const float x : {at(0), upright ? 0.0f : at(1), upright ? at(1) : at(2)}) (*to)->add(x);
+        // A section under a free surface stands upright, so that it can be laid over a run in space.
+        for (const float x : {at(0), upright_ ? 0.0f : at(1), upright_ ? at(1) : at(2)}) (*to)->add(x);
       }
     add(*rate, batch.rate);
     add(*stress, batch.shear_stress);

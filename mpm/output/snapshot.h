@@ -24,7 +24,7 @@ class SnapshotWriter {
 
   std::filesystem::path directory_;
   double cell_ = 0.0;
-  bool duct_ = false;
+  bool upright_ = false;
   int dimension_ = 2;
   std::vector<std::pair<std::string, double>> series_;
 };

@@ -8,6 +8,10 @@ std::string name_of(const Apparatus& apparatus) {
   return std::visit([](const auto& a) -> std::string { return a.name; }, apparatus);
 }
 
+MainGauge main_gauge_of(const Apparatus& apparatus) {
+  return std::visit([](const auto& a) { return a.main_gauge; }, apparatus);
+}
+
 std::vector<std::string> apparatus_names() {
   std::vector<std::string> names;
   for_each_apparatus([&](const auto& a) { names.emplace_back(a.name); });

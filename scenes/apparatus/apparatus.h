@@ -30,6 +30,9 @@ std::vector<std::string> apparatus_names();
 /// The apparatus of a name with its standard sizes; nothing where there is none of that name.
 const Apparatus* apparatus_named(const std::string& name);
 
+/// What runs of it are judged by.
+MainGauge main_gauge_of(const Apparatus&);
+
 /// Calls use(apparatus) with every apparatus in its standard sizes, in the order of the list.
 template <class Use>
 void for_each_apparatus(Use use) {
