@@ -294,7 +294,7 @@ BlockLattice vessel_mesh(const Scene& scene) {
     refuse(scene, "foam.cell is missing; `flowrest foam` needs a cell size above 0 m");
   const auto lattice = scene.kind() == Kind::l_box      ? l_box(scene)
                        : scene.kind() == Kind::v_funnel ? v_funnel(scene)
-                                                      : dam_break(scene);
+                                                        : dam_break(scene);
   if (const double cells = count_cells(lattice); cells > most_cells)
     refuse(scene, fmt::format("foam.cell = {:g} m gives {:.3g} cells; at most {:.0e} are allowed",
                               scene.foam.cell, cells, most_cells));

@@ -45,9 +45,7 @@ Gauges gauges_of_body(const Scene& scene) {
   return gauges;
 }
 
-MainGauge Scene::main_gauge() const {
-  return main_gauge_of(geometry.apparatus);
-}
+MainGauge Scene::main_gauge() const { return main_gauge_of(geometry.apparatus); }
 
 double Scene::body_height() const {
   return std::visit([](const auto& a) { return a.body_height(); }, geometry.apparatus);

@@ -88,7 +88,8 @@ std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const s
   std::vector<Candidate> candidates;
   for (const Knowledge& k : all)
     for (const KnownPoint& p : k.points)
-      if (k.kind == scene.kind() && k.dimension == scene.geometry.dimension && p.model == scene.material.model)
+      if (k.kind == scene.kind() && k.dimension == scene.geometry.dimension &&
+          p.model == scene.material.model)
         candidates.push_back({&k, &p});
   return candidates;
 }

@@ -165,11 +165,9 @@ TEST(Creep, OfTheSteppedDownDuct) {
   const std::pair<double, double> known[] = {
       {10.0, 1.69e-2}, {100.0, 1.84e-3}, {1e3, 1.86e-4}, {1e4, 1.86e-5}};
   for (const auto& [m, velocity] : known)
-    EXPECT_NEAR(
-        duct_creep(regularised_fluid(Law::papanastasiou, 100.0, 30.0, m), 0.5, 360.0) / velocity, 1.0,
-        4e-3)
+    EXPECT_NEAR(duct_creep(regularised_fluid(Law::papanastasiou, 100.0, 30.0, m), 0.5, 360.0) / velocity, 1.0,
+                4e-3)
         << "m " << m;
   // A Newtonian duct: F H^2/(8 eta).
-  EXPECT_NEAR(duct_creep(regularised_fluid(Law::papanastasiou, 0.0, 30.0, 0.0), 0.5, 360.0), 0.375,
-              1e-9);
+  EXPECT_NEAR(duct_creep(regularised_fluid(Law::papanastasiou, 0.0, 30.0, 0.0), 0.5, 360.0), 0.375, 1e-9);
 }

@@ -16,7 +16,7 @@ enum class Method { fast, plain };
 struct RunOptions {
   std::filesystem::path directory;  ///< the run directory
   bool quiet = false;
-  bool force = false;           ///< replace whatever run stands in the directory
+  bool force = false;  ///< replace whatever run stands in the directory
   /// Empty: the best this machine runs; where a run is gone on with, the one it had, as others round
   /// otherwise.
   std::string instruction_set;

@@ -179,7 +179,8 @@ TEST(Sampling, ContainersAreFilledToTheirVolumesWithinTheirWalls) {
       double volume = 0.0;
       const bool plane = dimension == "plane";
       if (scene->kind() == scenes::Kind::l_box) volume = plane ? 0.1 * 0.6 : 0.012;
-      if (scene->kind() == scenes::Kind::v_funnel) volume = scene->v_funnel().volume() / (plane ? 0.075 : 1.0);
+      if (scene->kind() == scenes::Kind::v_funnel)
+        volume = scene->v_funnel().volume() / (plane ? 0.075 : 1.0);
       if (scene->kind() == scenes::Kind::dam_break) volume = plane ? 0.36 : 0.36 * 0.15;
       if (scene->kind() == scenes::Kind::slump) volume = plane ? 0.15 * 0.3 : scene->slump().volume();
       // A column's top sinks under its own weight, by less than what its foot's pressure would press it.
