@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -71,10 +70,6 @@ class Runs {
   std::optional<Follower> coarser_, rounder_;
 };
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// The k-th time of an interval, the end of the run at the latest.
 double time_of(double k, double interval, double end) {
   const double time = k * interval;
@@ -101,9 +96,6 @@ class ElementRun {
 
   RunResult run() {
     try {
-      writer_.history_columns({"time_s", "spread_mm", "spread_1p5_mm", "spread_6_mm", "height_mm",
-                               "volume_m3", "spread_uncertainty_mm", "spread_by_grid_mm",
-                               "spread_by_rounding_mm", "height_uncertainty_mm"});
       return loop();
     } catch (const std::exception&) {
       const runs::Failure failure = runs::failure_at_hand(0.0);
@@ -169,10 +161,19 @@ class ElementRun {
     row_ = runs_.run().at(time);
     uncertainty_.grow_to(runs_.uncertainty(time, &Reading::spread));
     of_height_.grow_to(runs_.uncertainty(time, &Reading::height));
-    writer_.history(std::vector{time, 1e3 * row_.spread, 1e3 * row_.spread_half, 1e3 * row_.spread_double,
-                                1e3 * row_.height, row_.volume, 1e3 * uncertainty_.sum(),
-                                1e3 * uncertainty_.grid, 1e3 * uncertainty_.rounding,
-                                1e3 * of_height_.sum()});
+    using namespace runs::column;
+    runs::Row row;
+    row.add(runs::column::time, time)
+        .add(spread, row_.spread)
+        .add(spread_at_half_depth, row_.spread_half)
+        .add(spread_at_twice_depth, row_.spread_double)
+        .add(height, row_.height)
+        .add(volume, row_.volume)
+        .add(spread_uncertainty, uncertainty_.sum())
+        .add(spread_by_grid, uncertainty_.grid)
+        .add(spread_by_rounding, uncertainty_.rounding)
+        .add(height_uncertainty, of_height_.sum());
+    writer_.history(row);
     progress_.update(time, fmt::format("t = {:.2f} s, {}", time, shown()));
   }
 
@@ -193,7 +194,7 @@ class ElementRun {
     info["elements"]["fronts_let_down"] = record.closed;
     info["elements"]["largest_divergence_1_s"] = record.largest_divergence;
     info["elements"]["volume_corrected"] = record.volume_corrected;
-    info["wall_s"] = seconds_now() - wall_begin_;
+    info["wall_s"] = runs::wall_seconds() - wall_begin_;
     info["cpu_s"] = runs::cpu_seconds() - cpu_begin_;
   }
 
@@ -217,7 +218,7 @@ class ElementRun {
   Uncertainty uncertainty_, of_height_;          ///< of the spread, of the height
   double fields_made_ = 0.0, last_field_ = 0.0;  ///< their number; s
   double profiles_made_ = 0.0;
-  double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
+  double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = runs::wall_seconds();
 };
 
 }  // namespace

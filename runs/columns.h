@@ -57,6 +57,25 @@ inline constexpr Column spread_of_mass = {.name = "spread_mass_995_mm",
                                           .may_be_empty = true};
 inline constexpr Column height = {
     .name = "height_mm", .unit = "mm", .meaning = "depth at the centre", .per_si = 1e3, .may_be_empty = true};
+// Of a solution that knows how well it knows its lengths:
+inline constexpr Column spread_uncertainty = {.name = "spread_uncertainty_mm",
+                                              .unit = "mm",
+                                              .meaning = "how well the spread is known, plus or minus",
+                                              .per_si = 1e3};
+inline constexpr Column spread_by_grid = {.name = "spread_by_grid_mm",
+                                          .unit = "mm",
+                                          .meaning = "the part of that uncertainty that grid and step have",
+                                          .per_si = 1e3};
+inline constexpr Column spread_by_rounding = {
+    .name = "spread_by_rounding_mm",
+    .unit = "mm",
+    .meaning = "the part of it that the rounding of the flow law at small rates has",
+    .per_si = 1e3};
+inline constexpr Column height_uncertainty = {
+    .name = "height_uncertainty_mm",
+    .unit = "mm",
+    .meaning = "how well the depth at the centre is known, plus or minus",
+    .per_si = 1e3};
 inline constexpr Column plug_velocity = {
     .name = "plug_velocity_m_s", .unit = "m/s", .meaning = "velocity in the middle between the plates"};
 inline constexpr Column mean_velocity = {

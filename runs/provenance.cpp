@@ -2,6 +2,7 @@
 #include <sys/utsname.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -82,6 +83,10 @@ double peak_memory_bytes() {
     return static_cast<double>(usage.ru_maxrss);
   };
   return 1024.0 * std::max(kibibytes(RUSAGE_SELF), kibibytes(RUSAGE_CHILDREN));
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 double cpu_seconds(bool children) {

@@ -141,6 +141,9 @@ std::string version_in(const nlohmann::ordered_json& provenance);
 /// The most memory that this process, or any one child it has waited for, has held at once, bytes.
 double peak_memory_bytes();
 
+/// Seconds by a clock that only goes on, for wall times.
+double wall_seconds();
+
 /// CPU seconds of this process and, where `children`, of its finished children.
 double cpu_seconds(bool children = false);
 

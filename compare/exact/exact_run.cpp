@@ -61,6 +61,14 @@ std::vector<double> points_to(double edge) {
   return points;
 }
 
+runs::Row slump_row(double time, double spread, double height, double volume) {
+  return runs::Row()
+      .add(runs::column::time, time)
+      .add(runs::column::spread, spread)
+      .add(runs::column::height, height)
+      .add(runs::column::volume, volume);
+}
+
 template <class Profile>
 ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory, const Profile& profile,
                      double edge, double volume, const std::string& label, const std::string& source,
@@ -73,8 +81,7 @@ ExactRun write_slump(const Scene& scene, const std::filesystem::path& directory,
   writer.info()["label"] = label;
   writer.info()["source"] = source;
   writer.info()["radius_m"] = edge;
-  writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3"});
-  writer.history(std::vector{scene.time.end, 1000.0 * spread, 1000.0 * profile.depth(0.0), volume});
+  writer.history(slump_row(scene.time.end, spread, profile.depth(0.0), volume));
   writer.profile(scene.time.end, coordinate, depth);
   writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
   return {directory, fmt::format("{}: {} at {:g} mm depth ({} at its foot), {}", label,
@@ -143,7 +150,6 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
   writer.info()["model"] = "bingham";
   writer.info()["label"] = "exact, steady";
   writer.info()["source"] = "Yu et al. 2026, Eqs. 48-50";
-  writer.history_columns({"time_s", "plug_velocity_m_s", "mean_velocity_m_s"});
   std::vector<double> coordinate, velocity;
   constexpr int points = 401;
   for (int i = 0; i < points; ++i)
@@ -159,7 +165,10 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
     velocity.clear();
     for (const double y : coordinate) velocity.push_back(flow.velocity(y));
     // The steady state of a stage stands at the stage's end: how it comes about has no closed form.
-    writer.history(std::vector{end, flow.plug_velocity(), flow.mean_velocity()});
+    writer.history(runs::Row()
+                       .add(runs::column::time, end)
+                       .add(runs::column::plug_velocity, flow.plug_velocity())
+                       .add(runs::column::mean_velocity, flow.mean_velocity()));
     writer.profile(end, coordinate, velocity);
     summary += fmt::format("{} plug {:.6f} m/s, mean {:.6f} m/s under {:g} N/m3", stage == 0 ? "" : ";",
                            flow.plug_velocity(), flow.mean_velocity(), force[stage].second);
@@ -192,8 +201,8 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
                        "it stands at {:.0f} mm there",
                        1e3 * box.channel_height, 1e3 * shape.depth(box.reservoir_length)));
   const double front_depth = scene.gauges.front_depth;
-  const double front = 1e3 * (shape.reach(front_depth) - box.reservoir_length);
-  const double end = 1e3 * shape.end_height(), start = 1e3 * shape.start_height();
+  const double front = shape.reach(front_depth) - box.reservoir_length;
+  const double end = shape.end_height(), start = shape.start_height();
   const std::string label =
       flocculation ? fmt::format("exact, arrested, flocculation {:g}", *flocculation) : "exact, arrested";
   runs::RunWriter writer = open_run(directory / "arrested", scene, flocculation, replace);
@@ -201,18 +210,22 @@ std::vector<ExactRun> write_channel(const Scene& scene, const std::filesystem::p
   writer.info()["label"] = label;
   writer.info()["source"] =
       "yield stress on floor and side walls against the weight (Nguyen, Roussel and Coussot 2006), no bars";
-  writer.history_columns({"time_s", "front_mm", "end_height_mm", "start_height_mm", "volume_m3"});
-  writer.history(std::vector{scene.time.end, front, end, start, volume});
+  writer.history(runs::Row()
+                     .add(runs::column::time, scene.time.end)
+                     .add(runs::column::front, front)
+                     .add(runs::column::end_height, end)
+                     .add(runs::column::start_height, start)
+                     .add(runs::column::volume, volume));
   std::vector<double> coordinate = points_to(shape.front()), depth;
   for (const double x : coordinate) depth.push_back(shape.depth(x));
   writer.profile(scene.time.end, coordinate, depth);
   writer.finish(runs::Status::at_rest, "the arrested shape, reached without inertia", "sound");
-  const auto mm = [&](double length) { return runs::millimetres(1e-3 * length, front_depth); };
+  const auto mm = [&](double length) { return runs::millimetres(length, front_depth); };
   return {{directory / "arrested",
            end > 0.0
                ? fmt::format("{}: reaches the end, {} high there, {} at the start", label, mm(end), mm(start))
                : fmt::format("{}: {}, {} high at the start", label,
-                             runs::shown_length("front", 1e-3 * front, front_depth), mm(start))}};
+                             runs::shown_length("front", front, front_depth), mm(start))}};
 }
 
 }  // namespace
@@ -240,7 +253,6 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
   const std::string label = plug_pulls ? "thin film under its plug's pull, Bingham" : "thin film, Bingham";
   writer.info()["label"] = label;
   writer.info()["source"] = "lubrication of a yield-stress film (Liu and Mei 1989), solved numerically";
-  writer.history_columns({"time_s", "spread_mm", "height_mm", "volume_m3"});
   const auto& output = scene.output;
   const auto rows = static_cast<int>(std::ceil(scene.time.end / output.history_interval * (1.0 - 1e-12)));
   const int rows_per_profile =
@@ -253,7 +265,7 @@ ExactRun write_film_run(const Scene& scene, const std::filesystem::path& directo
     const auto radius = state.centres();
     spread = runs::spread(radius, state.depth, spread_depth);
     height = runs::centre_depth(radius, state.depth, spread_depth);
-    writer.history(std::vector{state.time, 1000.0 * spread, 1000.0 * height, state.volume()});
+    writer.history(slump_row(state.time, spread, height, state.volume()));
     if (row % rows_per_profile == 0 || row == rows) writer.profile(state.time, radius, state.depth);
   }
   writer.finish(runs::Status::end_time, "", "sound");
