@@ -1,18 +1,16 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
 #include "mpm/benchmark/flowing_slump.h"
 #include "mpm/benchmark/machine_limits.h"
+#include "runs/run_directory.h"
 
 /// What is measured in turns, so that a machine's other work meets all alike.
 namespace flowrest::mpm::bench {
 
-inline double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+using runs::wall_seconds;
 
 /// Time of a particle-step by a clock (cpu_seconds or wall_seconds), ns.
 inline double time_of_steps(FlowingSlump& slump, int steps, double (*clock)()) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -41,10 +40,6 @@ constexpr double energy_made_allowed = 0.05;
 constexpr double relaxation_time_beside_walls = 0.02;
 /// Below this many cells over the depth of a slump or across a passage a shear layer is not resolved.
 constexpr double cells_over_depth_wanted = 3.0;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// When a run ends, s: where a row of the history falls on time.end but for round-off, the time that the row
 /// has in a longer run.
@@ -213,12 +208,11 @@ class MpmRun {
     const double target = std::min(end_, next_row());
     state_.time = step >= target - state_.time ? target : state_.time + step;
     if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
-    const double sound = scene_.material.longitudinal_speed();
-    if (result.largest_speed > 2.0 * sound + scenes::free_fall_speed(scene_))
+    if (result.largest_speed > fastest_)
       throw runs::NumericsError(fmt::format(
           "a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
           "the step or the material is unstable",
-          result.largest_speed, sound));
+          result.largest_speed, scene_.material.longitudinal_speed()));
   }
 
   double total_energy() const {
@@ -296,7 +290,7 @@ class MpmRun {
   void checkpoint() {
     state_.calm_since = rest_.calm_since().value_or(-1.0);
     state_.cpu = runs::cpu_seconds() - cpu_begin_;
-    state_.wall = seconds_now() - wall_begin_;
+    state_.wall = runs::wall_seconds() - wall_begin_;
     state_.stages = stage_times();
     write_checkpoint(options_.directory, state_, *solver_, scenes::resolved_toml(scene_), noise_.state());
   }
@@ -327,7 +321,7 @@ class MpmRun {
 
   void summarise() {
     auto& info = writer_.info();
-    const double cpu = runs::cpu_seconds() - cpu_begin_, wall = seconds_now() - wall_begin_;
+    const double cpu = runs::cpu_seconds() - cpu_begin_, wall = runs::wall_seconds() - wall_begin_;
     const double particle_steps = state_.steps * static_cast<double>(solver_->particle_count());
     info["simulated_s"] = state_.time;
     info["gauge"] = measures_.body.main;
@@ -452,7 +446,9 @@ class MpmRun {
   NoiseMeter noise_;
   double factor_;
   double end_ = end_of(scene_);  ///< s
-  double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = seconds_now();
+  /// m/s, than which nothing moves that is computed stably.
+  double fastest_ = 2.0 * scene_.material.longitudinal_speed() + scenes::free_fall_speed(scene_);
+  double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = runs::wall_seconds();
   std::unique_ptr<Solver> solver_;
   runs::RunWriter writer_;
   SnapshotWriter snapshots_;
