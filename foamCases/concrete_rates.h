@@ -1,9 +1,8 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
-#include "runs/rest.h"
+#include "runs/quantile.h"
 
 namespace flowrest::foam {
 
@@ -23,7 +22,7 @@ class ConcreteRates {
   }
 
  private:
-  std::vector<std::pair<double, double>> rates_, overstressing_;
+  std::vector<runs::Weighted> rates_, overstressing_;
 };
 
 }  // namespace flowrest::foam

@@ -7,7 +7,7 @@
 
 #include "foamCases/concrete_rates.h"
 #include "runs/depth.h"
-#include "runs/rest.h"
+#include "runs/quantile.h"
 
 namespace flowrest::foam {
 
@@ -180,7 +180,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
   runs::RadialDepthAccumulator rings(grid.width, grid.side * grid.width);
   const auto rate = shear_rate(grid, fields.velocity, slip);
   ConcreteRates inside;
-  std::vector<std::pair<double, double>> at_base;
+  std::vector<runs::Weighted> at_base;
   for_each_cell(grid, [&](const std::array<int, 3>& cell) {
     const auto [i, j, row] = cell;
     const auto index = grid.index(i, j, row);

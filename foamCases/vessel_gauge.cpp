@@ -7,7 +7,7 @@
 #include "foamCases/concrete_rates.h"
 #include "foamCases/vessel_mesh.h"
 #include "runs/depth.h"
-#include "runs/rest.h"
+#include "runs/quantile.h"
 
 namespace flowrest::foam {
 
@@ -68,7 +68,7 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
   const double density = scene_.material.density;
   const bool held = floor_holds();
   ConcreteRates inside;
-  std::vector<std::pair<double, double>> at_floor;
+  std::vector<runs::Weighted> at_floor;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const MeshCell& cell = cells_[i];
     const double concrete = factor_ * fields.fraction[i] * cell.volume;

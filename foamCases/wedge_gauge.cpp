@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "foamCases/concrete_rates.h"
-#include "runs/rest.h"
+#include "runs/quantile.h"
 
 namespace flowrest::foam {
 
@@ -89,7 +89,7 @@ void gauge_shear_rates(const WedgeGrid& grid, const SlumpFields& fields, bool sl
 
 /// Velocity over the base by the half cell that lies between: the rate that the wall's stress answers to.
 double base_shear_rate(const WedgeGrid& grid, const SlumpFields& fields) {
-  std::vector<std::pair<double, double>> under_concrete;
+  std::vector<runs::Weighted> under_concrete;
   for (int ring = 0; ring < grid.rings; ++ring) {
     const auto cell = grid.index(ring, 0);
     if (fields.fraction[cell] >= nearly_full)

@@ -1,10 +1,10 @@
-#include "mpm/gauges/quantile.h"
+#include "runs/quantile.h"
 
 #include <algorithm>
 
 #include "runs/depth.h"
 
-namespace flowrest::mpm {
+namespace flowrest::runs {
 
 double quantile(std::vector<Weighted>& values, double share) {
   std::sort(values.begin(), values.end());
@@ -13,7 +13,7 @@ double quantile(std::vector<Weighted>& values, double share) {
   double sum = 0.0;
   for (const auto& v : values)
     if ((sum += v.second) >= share * total) return v.first;
-  return values.empty() ? runs::nothing : values.back().first;
+  return values.empty() ? nothing : values.back().first;
 }
 
-}  // namespace flowrest::mpm
+}  // namespace flowrest::runs

@@ -14,15 +14,6 @@ constexpr double growth_per_overstress = 0.2;
 
 }  // namespace
 
-double percentile_99(std::vector<std::pair<double, double>> value_and_weight) {
-  std::sort(value_and_weight.begin(), value_and_weight.end());
-  double total = 0.0, sum = 0.0;
-  for (const auto& [value, weight] : value_and_weight) total += weight;
-  for (const auto& [value, weight] : value_and_weight)
-    if ((sum += weight) >= 0.99 * total) return value;
-  return value_and_weight.empty() ? nothing : value_and_weight.back().first;
-}
-
 Rest::Rest(const scenes::Scene& scene)
     : stops_(scene.time.stop_at_rest),
       bound_(scene.time.rest_bound),

@@ -9,9 +9,6 @@
 /// When material that can rest is at rest: one definition for every solver.
 namespace flowrest::runs {
 
-/// The value that 99 % of the weight does not exceed; `nothing` without any. Pairs of value and weight.
-double percentile_99(std::vector<std::pair<double, double>> value_and_weight);
-
 /// Follows the overstress of the material: by what part its stress passes the yield stress where it shears,
 /// eta rate / ((1 + lambda) tau0) with the flocculation lambda of the place. What governs is its 99th
 /// percentile by mass: the fastest of a hundred parts of the material, so that a single particle or cell in a

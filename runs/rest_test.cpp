@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runs/depth.h"
+#include "runs/quantile.h"
 #include "scenes/test_scenes.h"
 
 namespace flowrest::runs {

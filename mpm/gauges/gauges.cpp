@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mpm/gauges/quantile.h"
 #include "mpm/solver/settings.h"
+#include "runs/quantile.h"
 
 namespace flowrest::mpm {
 
@@ -45,8 +45,9 @@ class Sums {
     m.volume_at_rest = factor_ * mass_ / density_;
     m.flocculation_mean = flocculation_ / mass_;
     m.highest = highest_;
-    m.shear_rate_p99 = quantile(rates_, 0.99);
-    m.overstress_p99 = flocculates_ ? quantile(overstresses_, 0.99) : rest_.overstress(m.shear_rate_p99);
+    m.shear_rate_p99 = runs::quantile(rates_, 0.99);
+    m.overstress_p99 =
+        flocculates_ ? runs::quantile(overstresses_, 0.99) : rest_.overstress(m.shear_rate_p99);
     return m;
   }
 
@@ -56,7 +57,7 @@ class Sums {
   bool flocculates_ = false;
   double kinetic_ = 0.0, potential_ = 0.0, elastic_ = 0.0, mass_ = 0.0, volume_ = 0.0, flocculation_ = 0.0;
   double highest_ = 0.0;
-  std::vector<Weighted> rates_, overstresses_;
+  std::vector<runs::Weighted> rates_, overstresses_;
 };
 
 }  // namespace
