@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scenes/pieces.h"
 #include "scenes/test_scenes.h"
 
 namespace flowrest::scenes::test {
@@ -462,6 +463,13 @@ TEST(Material, ModuliFollowFromYoungsModulus) {
 
 TEST(Slump, VolumeIsThatOfAFrustum) {
   EXPECT_NEAR(parse_scene(slump_text, "s.toml").slump().volume(), 5.49779e-3, 1e-8);
+}
+
+TEST(Pieces, AreGaugedByWhatTheirApparatusIsJudgedBy) {
+  for (const SceneSummary& listed : list_scenes()) {
+    const Scene scene = load_scene(listed.name);
+    EXPECT_EQ(pieces_of(scene).gauged.index(), static_cast<std::size_t>(scene.main_gauge())) << listed.name;
+  }
 }
 
 TEST(Forces, ABodyForceHoldsFromItsTime) {

@@ -1,17 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
-#include "scenes/apparatus/load.h"
-#include "scenes/choices.h"
+#include "scenes/apparatus/apparatus_header.h"
 
 namespace flowrest::scenes {
-
-struct Case;
-struct Key;
-struct Pieces;
-struct Scene;
 
 /// A layer between two parallel plates, periodic along x and driven along x.
 struct Duct {

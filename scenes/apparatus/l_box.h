@@ -1,17 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
-#include "scenes/apparatus/load.h"
-#include "scenes/choices.h"
+#include "scenes/apparatus/apparatus_header.h"
 
 namespace flowrest::scenes {
-
-struct Case;
-struct Key;
-struct Pieces;
-struct Scene;
 
 /// EN 12350-10: a reservoir whose gate opens on a channel behind upright bars (Yu et al. 2026, Fig. 18). x
 /// runs along the channel from the reservoir's back wall.

@@ -1,17 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
-#include "scenes/apparatus/load.h"
-#include "scenes/choices.h"
+#include "scenes/apparatus/apparatus_header.h"
 
 namespace flowrest::scenes {
-
-struct Case;
-struct Key;
-struct Pieces;
-struct Scene;
 
 /// EN 12350-9: a funnel between two upright plates, over an outlet that opens at once (Yu et al. 2026, Fig.
 /// 24). x runs across its slopes, heights from the outlet.
