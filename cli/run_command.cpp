@@ -19,6 +19,7 @@
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "runs/run_folder.h"
+#include "scenes/installation.h"
 #include "scenes/plausibility.h"
 #include "scenes/scene.h"
 #ifdef FLOWREST_HAS_COMPARE
@@ -116,6 +117,17 @@ std::vector<std::string> begin_or_go_on(const std::string& solver, const std::st
   return arguments;
 }
 
+#ifdef FLOWREST_HAS_COMPARE
+/// What writes exact solutions of a scene.
+std::vector<std::string> exact_arguments(const std::string& named, const fs::path& directory,
+                                         const RunCommandOptions& options) {
+  std::vector<std::string> arguments = {"exact", named, "-o", directory.string()};
+  if (options.force) arguments.push_back("--force");
+  add_settings(arguments, options.set);
+  return arguments;
+}
+#endif
+
 /// The runs a scene names, the longest kind first so that no core waits for it at the end.
 std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, const fs::path& folder,
                         const RunCommandOptions& options, bool share_cores) {
@@ -142,9 +154,8 @@ std::deque<Job> jobs_of(const scenes::Scene& scene, const std::string& named, co
     Job job;
     job.name = scene.name + " elements";
     job.directory = folder / "elements";
-    job.arguments = {"exact", named, "--elements", "-o", job.directory.string()};
-    if (options.force) job.arguments.push_back("--force");
-    add_settings(job.arguments, options.set);
+    job.arguments = exact_arguments(named, job.directory, options);
+    job.arguments.push_back("--elements");
     jobs.push_back(std::move(job));
   }
 #endif
@@ -160,7 +171,7 @@ class Scheduler {
   /// interrupted.
   int run() {
     const runs::InterruptGuard guard;
-    const fs::path program = fs::read_symlink("/proc/self/exe");
+    const fs::path program = scenes::program_file();
     while (!waiting_.empty() || !running_.empty()) {
       if (runs::InterruptGuard::count() > 0) interrupt();
       while (!waiting_.empty() && static_cast<int>(running_.size()) < at_once_) {
@@ -207,7 +218,7 @@ class Scheduler {
 #ifdef FLOWREST_HAS_COMPARE
 /// Runs another of this program's commands, its output going where ours goes; returns its exit code.
 int call(const std::vector<std::string>& arguments, const fs::path& log, Relay& relay) {
-  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
+  runs::Process process(scenes::program_file(), arguments, fs::current_path(), log, {});
   bool interrupted = false;
   while (!process.poll()) {
     interrupted = process.hand_on_interrupts();
@@ -226,10 +237,7 @@ int compare_runs(const scenes::Scene& scene, const std::string& named, const fs:
                  std::vector<fs::path> made, const RunCommandOptions& options, Relay& relay) {
   int code = 0;
   if (scene.runs.exact) {
-    std::vector<std::string> exact = {"exact", named, "-o", (folder / "exact").string()};
-    if (options.force) exact.push_back("--force");
-    add_settings(exact, options.set);
-    code = call(exact, folder / "logs" / "exact.log", relay);
+    code = call(exact_arguments(named, folder / "exact", options), folder / "logs" / "exact.log", relay);
     if (code == 130) return code;
     if (code == 0) made.push_back(folder / "exact");
   }

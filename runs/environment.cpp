@@ -30,6 +30,19 @@ std::map<std::string, std::string> own_environment() {
   return entries;
 }
 
+std::vector<std::string> texts_of(const std::map<std::string, std::string>& entries) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : entries) texts.push_back(name + "=" + value);
+  return texts;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 Environment Environment::of_helper() {
   return with_home(private_home()).set("TMPDIR", private_home().string());
 }

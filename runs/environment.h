@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace flowrest::runs {
 
@@ -31,6 +32,11 @@ class Environment {
   explicit Environment(const Home&);
   std::map<std::string, std::string> entries_;
 };
+
+/// An environment as execve takes it: "NAME=VALUE" each.
+std::vector<std::string> texts_of(const std::map<std::string, std::string>& entries);
+/// Texts as execve takes them, null at the end; they point into `texts`.
+std::vector<char*> pointers_to(std::vector<std::string>& texts);
 
 /// All that this process was told: for its own program as a child.
 std::map<std::string, std::string> own_environment();

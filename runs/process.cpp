@@ -74,12 +74,6 @@ std::string value_of(const std::map<std::string, std::string>& environment, cons
   return found == environment.end() ? "" : found->second;
 }
 
-std::vector<std::string> texts_of(const std::map<std::string, std::string>& environment) {
-  std::vector<std::string> texts;
-  for (const auto& [name, value] : environment) texts.push_back(name + "=" + value);
-  return texts;
-}
-
 /// What a process was told when it was started; empty for the dead that wait for their parent.
 std::map<std::string, std::string> environment_of(const fs::path& process) {
   std::map<std::string, std::string> entries;
@@ -127,13 +121,6 @@ std::set<pid_t> family_of(const std::string& mark) {
       if (family.contains(parent)) family.insert(pid);
   }
   return family;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  for (auto& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
-  return result;
 }
 
 /// In the child, between fork and exec: only calls that are safe there. Returns where something fails.
@@ -211,8 +198,8 @@ void Process::start(const fs::path& program, const std::vector<std::string>& arg
   std::vector<std::string> argument_texts{program.filename().string()};
   argument_texts.insert(argument_texts.end(), arguments.begin(), arguments.end());
   auto environment_texts = texts_of(environment);
-  const auto argument_pointers = pointers(argument_texts);
-  const auto environment_pointers = pointers(environment_texts);
+  const auto argument_pointers = pointers_to(argument_texts);
+  const auto environment_pointers = pointers_to(environment_texts);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) cannot_be_written(log, errno);
   int word[2];  // by which the child says why it has not become the program; closed by its becoming it

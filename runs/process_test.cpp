@@ -14,6 +14,7 @@
 
 #include "runs/run_directory.h"
 #include "runs/temporary_folder.h"
+#include "runs/test_variable.h"
 
 using namespace flowrest::runs;
 namespace fs = std::filesystem;
@@ -27,22 +28,6 @@ std::string text_of(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
 }
-
-/// A variable as long as it lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* text = std::getenv(name)) before_ = text;
-    setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 /// Whatever becomes of a test, nothing that wrote its number into a file named "deaf" outlives it.
 class ProcessTest : public testing::Test {

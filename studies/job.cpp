@@ -11,6 +11,7 @@
 #include "runs/machine.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
+#include "scenes/installation.h"
 
 namespace flowrest::studies {
 
@@ -138,8 +139,8 @@ double seconds_since(Clock::time_point begin) {
 /// Starts the run or goes on with it, and waits for its end; it has what is left of the longest time since
 /// `begin`.
 Outcome attempt(const Folder& folder, const Job& job, bool begun, Clock::time_point begin) {
-  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments_of(folder, job, begun),
-                        fs::current_path(), folder.log(job.id), {});
+  runs::Process process(scenes::program_file(), arguments_of(folder, job, begun), fs::current_path(),
+                        folder.log(job.id), {});
   bool too_long = false;
   while (!process.poll()) {
     process.hand_on_interrupts();

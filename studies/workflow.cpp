@@ -147,7 +147,7 @@ std::size_t prepare(const Folder& folder, const Study& study, const std::vector<
     fs::remove(folder.mark(point->id));
     ++missing;
   }
-  const Json jobs = {{"flowrest", fs::read_symlink("/proc/self/exe").string()},
+  const Json jobs = {{"flowrest", scenes::program_file().string()},
                      {"study", study.name},
                      {"longest_run_s", study.longest_run},
                      {"jobs", jobs_of(study, points)}};

@@ -53,13 +53,6 @@ std::string from_base64(const std::string& text) {
   _exit(127);
 }
 
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  for (std::string& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
-  return result;
-}
-
 /// The address of a file: what means something in an address is written as its number.
 std::string address_of(const std::filesystem::path& file) {
   std::string address = "file://";
@@ -104,10 +97,8 @@ Browser::Browser(const std::filesystem::path& folder) {
                                     "--no-first-run",
                                     "--user-data-dir=" + (folder / "profile").string(),
                                     "about:blank"};
-  std::vector<std::string> told;
-  const auto settings = runs::Environment::of_helper();
-  for (const auto& [name, value] : settings.entries()) told.push_back(name + "=" + value);
-  const auto arguments = pointers(texts), environment = pointers(told);
+  std::vector<std::string> told = runs::texts_of(runs::Environment::of_helper().entries());
+  const auto arguments = runs::pointers_to(texts), environment = runs::pointers_to(told);
   process_ = fork();
   if (process_ == 0)
     become_browser(program->c_str(), arguments.data(), environment.data(), commands[0], answers[1]);

@@ -17,9 +17,11 @@
 #include "compare/synthetic_runs.h"
 #include "runs/process.h"
 #include "runs/temporary_folder.h"
+#include "runs/test_variable.h"
 
 using namespace flowrest;
 using namespace flowrest::compare;
+using runs::Variable;
 using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
@@ -30,22 +32,6 @@ std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
-
-/// A variable as long as it lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* text = std::getenv(name)) before_ = text;
-    setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 class ReportTest : public testing::Test {
  protected:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runs/process.h"
+#include "scenes/installation.h"
 
 namespace flowrest::studies::verification {
 
@@ -18,7 +19,7 @@ runs::Run run_scene(const std::string& scene, const std::vector<std::string>& se
   for (const std::string& s : set) arguments.insert(arguments.end(), {"--set", s});
   for (const char* s : {"mpm.threads=1", "output.snapshot_interval=1e6", "output.checkpoint_interval=1e6"})
     arguments.insert(arguments.end(), {"--set", s});
-  runs::Process process(fs::read_symlink("/proc/self/exe"), arguments, fs::current_path(), log, {});
+  runs::Process process(scenes::program_file(), arguments, fs::current_path(), log, {});
   bool asked = false;
   while (!process.wait(0.2))
     if (place.interrupted()) asked = process.hand_on_interrupts();
