@@ -125,6 +125,9 @@ std::string step_rule(const scenes::Scene& scene, bool plug_in) {
 }
 
 /// A program of OpenFOAM's at work on a case, which it is told by a name that it can read.
+/// What the cases' control dictionaries watch for: interFoam ends its step, writes and stops.
+constexpr const char* stop_file = "stop";
+
 std::unique_ptr<runs::Process> start(const Call& call, const runs::PlainName& place, const fs::path& log) {
   auto arguments = call.arguments;
   arguments.insert(arguments.end(), {"-case", place.path().string()});
@@ -318,6 +321,7 @@ class CaseRun {
     sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
     if (!state_ && !starts_with_the_body()) return;
     const fs::path log_path = case_ / "log.interFoam";
+    fs::remove(case_ / stop_file);
     const auto solver = start(programs_.solve, place_, log_path);
     FileTail tail(log_path);
     bool running = true;
@@ -420,7 +424,11 @@ class CaseRun {
   void stop(runs::Process& solver) {
     const auto deadline = Clock::now() + std::chrono::duration<double>(options_.grace);
     const int asked = runs::InterruptGuard::count();
-    solver.signal(SIGUSR2);
+    if (ranks() > 1) {
+      std::ofstream(case_ / stop_file);  // a signal would reach the ranks in different steps
+    } else {
+      solver.signal(SIGUSR2);
+    }
     while (Clock::now() < deadline && runs::InterruptGuard::count() <= asked)
       if (solver.wait(poll_interval)) return;
     solver.signal(SIGTERM);

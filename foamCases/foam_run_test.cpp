@@ -420,6 +420,27 @@ TEST_F(FakeOpenFoam, AnInterruptLetsTheSolverEndItsStep) {
   EXPECT_GE(run.history.rows(), 1U);
 }
 
+/// A signal would reach them in different steps, and each would wait for the other.
+TEST_F(FakeOpenFoam, SeveralRanksAreStoppedByAFileAndNoSignal) {
+  options_.ranks = 2;
+  // All cells are the first one's.
+  program("decomposePar",
+          "head='FoamFile { format ascii; }'\n"
+          "for i in 0 1; do mkdir -p processor$i/0 processor$i/constant/polyMesh; done\n"
+          "cp 0/* processor0/0; cp 0/U processor1/0\n"
+          "echo \"$head internalField nonuniform List<scalar> 0();\" > processor1/0/alpha.concrete\n"
+          "echo \"$head 63 ($(seq 0 62))\" > processor0/constant/polyMesh/cellProcAddressing\n"
+          "echo \"$head 0()\" > processor1/constant/polyMesh/cellProcAddressing");
+  program("reconstructPar", "exit 0");
+  program("interFoam", "trap 'exit 7' USR2\n" + step(0.5, 0.5) +
+                           "until [ -e stop ]; do sleep 0.05; done; sleep 0.5; echo End");
+  const auto interrupt = interrupt_when_begun(options_.directory / "case" / "log.interFoam");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(run_scene(scene_, options_).status, runs::Status::interrupted);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(40)) << "the grace is a minute";
+  EXPECT_FALSE(fs::exists(options_.directory / "case" / "processor0"));
+}
+
 TEST_F(FakeOpenFoam, ASolverThatDoesNotStopIsMadeTo) {
   options_.grace = 0.2;
   program("interFoam", "trap '' USR2 TERM\n" + step(0.5, 0.5) + "while :; do sleep 0.05; done");
