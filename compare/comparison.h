@@ -10,6 +10,7 @@
 #include "compare/measures/series.h"
 #include "compare/words.h"
 #include "runs/run_directory.h"
+#include "runs/verdict.h"
 
 /// Compares run directories, whoever made them: measures of each, differences between them, and what they say
 /// in words.
@@ -99,8 +100,7 @@ struct RunView {
   bool held = false;             ///< it came to rest: its last state stands for all later times
   std::optional<laws::Law> law;  ///< that `model` names
   bool fluid = false;            ///< a law that never comes to rest
-  bool noisy = false;
-  std::string noise;    ///< why
+  runs::Doubt doubt;             ///< of its own verdict: noisy, under-resolved
   std::string trouble;  ///< "interrupted at 12 s", "failed at 3 s: why"; empty where the run came to its end
   scenes::Gauges gauges;     ///< what its gauges are defined by
   bool unread = false;       ///< its last row has nothing to read of the gauge

@@ -63,7 +63,8 @@ std::vector<report::Entry> entries_of(const Comparison& comparison) {
   std::set<std::pair<int, int>> taken;
   for (const RunView& view : comparison.runs) {
     report::Entry entry = entry_of(view.label, view.solver, view.model);
-    entry.noise = view.noisy ? view.noise : "";
+    entry.doubt = view.doubt.word();
+    entry.why = view.doubt.why;
     entry.trouble = view.trouble;
     while (!taken.insert({entry.colour, entry.dash % 8}).second && taken.size() < 64) ++entry.dash;
     entries.push_back(entry);
@@ -445,7 +446,7 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
   for (const RunView& view : comparison.runs) {
     if (!moving(view)) continue;
     const Measures& m = view.measures;
-    bars.categories.push_back(view.label + (view.noisy ? " (noisy)" : "") +
+    bars.categories.push_back(view.label + (view.doubt.any() ? fmt::format(" ({})", view.doubt.word()) : "") +
                               (view.trouble.empty() ? "" : " (incomplete)"));
     const double floor = is_duct(comparison) ? 1e-8 : 10.0 * comparison.grain.speed;
     bars.groups[0].values.push_back(std::max(std::abs(*m.residual) * scale, floor));

@@ -283,7 +283,7 @@ TEST_F(ComparisonTest, ANoisyRunIsCalledSo) {
   noisy.verdict = "noisy: the initial residual rose to 0.12";
   synthetic::write(noisy, folder / "foam");
   Comparison comparison = compared();
-  EXPECT_TRUE(run(comparison, "OpenFOAM papanastasiou").noisy);
+  EXPECT_TRUE(run(comparison, "OpenFOAM papanastasiou").doubt.noisy);
   EXPECT_EQ(run(comparison, "OpenFOAM papanastasiou").measures.cause, Cause::noise);
   EXPECT_THAT(text(comparison), HasSubstr("noisy: the initial residual rose to 0.12"));
   noisy.verdict = "sound";
@@ -295,6 +295,24 @@ TEST_F(ComparisonTest, ANoisyRunIsCalledSo) {
   noisy.verdict = "noisy: the initial residual rose to 0.12";
   synthetic::write(noisy, folder / "foam");
   EXPECT_EQ(run(compared(), "OpenFOAM papanastasiou").measures.cause, Cause::creep_or_noise);
+}
+
+TEST_F(ComparisonTest, ARunOfTooFewCellsIsCalledUnderResolvedAndNotNoisy) {
+  write_arrested();
+  synthetic::Slump coarse = creeping(4e-3);
+  coarse.solver = "foam";
+  coarse.verdict = "under-resolved: 3.3 cells over the sheared layer";
+  synthetic::write(coarse, folder / "foam");
+  Comparison comparison = compared();
+  const RunView& view = run(comparison, "OpenFOAM papanastasiou");
+  EXPECT_TRUE(view.doubt.under_resolved);
+  EXPECT_EQ(view.measures.cause, Cause::unexplained);
+  EXPECT_THAT(text(comparison), HasSubstr("under-resolved: OpenFOAM papanastasiou"));
+  EXPECT_THAT(text(comparison), HasSubstr("under-resolved: 3.3 cells over the sheared layer"));
+  EXPECT_THAT(text(comparison), Not(HasSubstr("noisy")));
+  coarse.verdict = "noisy: it chatters; under-resolved: 3.3 cells";
+  synthetic::write(coarse, folder / "foam");
+  EXPECT_THAT(text(compared()), HasSubstr("noisy, under-resolved: it chatters; under-resolved: 3.3 cells"));
 }
 
 /// Regularised so stiffly that it hardly creeps, a fluid still does what the exact material does.

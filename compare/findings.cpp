@@ -43,8 +43,13 @@ std::string difference_in(const Comparison& comparison, double value, double unc
                      value > 0.0 ? gauge.more : gauge.less);
 }
 
-std::string noise_clause(const RunView& view) {
-  return view.noisy ? fmt::format("; noisy: {}", view.noise) : "";
+std::string doubt_clause(const RunView& view) {
+  return view.doubt.any() ? fmt::format("; {}: {}", view.doubt.word(), view.doubt.why) : "";
+}
+
+/// The same in brackets, at a sentence's end.
+std::string doubt_in_brackets(const RunView& view) {
+  return view.doubt.any() ? fmt::format(" ({}: {})", view.doubt.word(), view.doubt.why) : "";
 }
 
 /// "still grows by 0.10 to 0.15 mm/s then": a thin film of the exact material.
@@ -57,7 +62,7 @@ std::string approach_words(const Comparison& comparison, const Measures& m) {
 std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
   const std::string& gauge = gauge_of(comparison.kind).name;
   const Measures& m = view.measures;
-  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  const std::string doubt = doubt_in_brackets(view);
   const double finest = comparison.grain.length;
   const std::string more =
       m.growth_to_come
@@ -68,18 +73,18 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
   if (view.held)
     return fmt::format("{} comes to rest{} with a {} of {}{}{}.", view.label,
                        m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "", gauge,
-                       end_of(comparison, view), more, noise);
+                       end_of(comparison, view), more, doubt);
   const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
   if (m.cause == Cause::at_rest && rest)
     return fmt::format("{} has all but stopped by {} and ends with a {} of {}{}.", view.label,
-                       words::time(*rest), gauge, end_of(comparison, view), noise);
+                       words::time(*rest), gauge, end_of(comparison, view), doubt);
   const std::string exact =
       m.approach_most ? fmt::format(", where a thin film of it {}", approach_words(comparison, m)) : "";
   return fmt::format(
       "{} has not come to rest by {}: its {} is {}{}{}{}.", view.label, words::time(*m.end), gauge,
       end_of(comparison, view),
       m.residual ? fmt::format(" and grows by {}", words::speed(*m.residual, comparison.grain)) : "", exact,
-      noise);
+      doubt);
 }
 
 /// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
@@ -100,7 +105,7 @@ std::string fluid_clause(const Comparison& comparison, const RunView& view) {
     add(fmt::format("{} by {}", *m.residual >= 0.0 ? "growing" : "shrinking",
                     words::speed(std::abs(*m.residual), comparison.grain)));
   return fmt::format("{} stands at {}{}{}{}", view.label, end_of(comparison, view), inner.empty() ? "" : " (",
-                     inner, inner.empty() ? "" : noise_clause(view) + ")");
+                     inner, inner.empty() ? "" : doubt_clause(view) + ")");
 }
 
 /// The fluids, those that end together in one sentence.
@@ -293,14 +298,17 @@ std::string event_clause(const Comparison& comparison, const std::string& quanti
 
 /// The headline: what comes to rest and what does not, with every warning.
 std::string opening_sentence(const Comparison& comparison) {
-  std::vector<std::string> moving, noisy, incomplete;
+  std::vector<std::string> moving, incomplete;
+  std::map<std::string, std::vector<std::string>> doubtful;
   const RunView* arrested = nullptr;
   bool all_fluids = true;
   // What a run declares counts before what is read off its record, a sound run before a noisy one.
-  const auto rank = [](const RunView& view) { return 2 * view.held + !view.noisy; };
+  const auto rank = [](const RunView& view) {
+    return 4 * view.held + 2 * !view.doubt.noisy + !view.doubt.under_resolved;
+  };
   for (const RunView& view : comparison.runs) {
     if (view.exact) continue;
-    if (view.noisy) noisy.push_back(view.label);
+    if (view.doubt.any()) doubtful[view.doubt.word()].push_back(view.label);
     if (!view.trouble.empty()) incomplete.push_back(fmt::format("{} ({})", view.label, view.trouble));
     if (view.gauge.empty() || !view.trouble.empty()) continue;
     const bool rests = view.held || view.measures.cause == Cause::at_rest ||
@@ -342,7 +350,7 @@ std::string opening_sentence(const Comparison& comparison) {
       comparison.kind != scenes::Kind::dam_break)
     add(fmt::format("{} {} still moving at {}", who, moving.size() == 1 ? "is" : "are",
                     words::time(comparison.end)));
-  if (!noisy.empty()) add(fmt::format("noisy: {}", listed(noisy)));
+  for (const auto& [word, labels] : doubtful) add(fmt::format("{}: {}", word, listed(labels)));
   if (!incomplete.empty()) add(fmt::format("incomplete: {}", listed(incomplete)));
   return text.empty() ? "" : text + ".";
 }
@@ -352,7 +360,7 @@ std::string trouble_sentences(const Comparison& comparison) {
   for (const RunView& view : comparison.runs)
     if (!view.trouble.empty())
       text += fmt::format("{}{} is incomplete ({}); what follows knows it only that far{}.",
-                          text.empty() ? "" : " ", view.label, view.trouble, noise_clause(view));
+                          text.empty() ? "" : " ", view.label, view.trouble, doubt_clause(view));
   return text;
 }
 
@@ -377,7 +385,7 @@ void tell(Comparison& comparison, Topic topic, std::string text) {
 
 /// What a run's front met in a box or a tank, and what runs out of a funnel.
 std::string readings_sentence(const Comparison& comparison, const RunView& view) {
-  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  const std::string doubt = doubt_in_brackets(view);
   if (comparison.kind == scenes::Kind::v_funnel) {
     const auto light = reading_of(comparison, view, "light_s");
     const auto rest = reading_of(comparison, view, "rest_s");
@@ -387,7 +395,7 @@ std::string readings_sentence(const Comparison& comparison, const RunView& view)
       text += fmt::format("; {:.0f} % of the mass has run out by {}", 100.0 * view.gauge.value.back(),
                           words::time(view.gauge.end()));
     if (rest) text += fmt::format("; at rest after {}", *rest);
-    return text + noise + ".";
+    return text + doubt + ".";
   }
   const auto arrival = reading_of(comparison, view, "arrival_s"),
              height = reading_of(comparison, view, "end_height_mm");
@@ -396,7 +404,7 @@ std::string readings_sentence(const Comparison& comparison, const RunView& view)
                        height && comparison.kind == scenes::Kind::l_box
                            ? fmt::format(" and stands {} high there at the end", *height)
                            : "",
-                       noise);
+                       doubt);
   return "";
 }
 
@@ -496,15 +504,15 @@ void describe_growth(Comparison& comparison) {
 
 std::string duct_sentence(const RunView& view) {
   const Measures& m = view.measures;
-  const std::string noise = view.noisy ? fmt::format(" (noisy: {})", view.noise) : "";
+  const std::string doubt = doubt_in_brackets(view);
   const std::string largest =
       words::velocity(*std::max_element(view.gauge.value.begin(), view.gauge.value.end()));
   if (m.stop_after_step && m.cause != Cause::creep)
     return fmt::format("{} reaches {} and stops {} after the last change of force{}.", view.label, largest,
-                       words::time(*m.stop_after_step), noise);
-  if (!m.residual) return fmt::format("{} reaches {}{}.", view.label, largest, noise);
+                       words::time(*m.stop_after_step), doubt);
+  if (!m.residual) return fmt::format("{} reaches {}{}.", view.label, largest, doubt);
   return fmt::format("{} reaches {} and still moves at {}{}.", view.label, largest,
-                     words::velocity(*m.residual), noise);
+                     words::velocity(*m.residual), doubt);
 }
 
 void describe_duct(Comparison& comparison) {

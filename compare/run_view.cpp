@@ -147,11 +147,7 @@ RunView view_of(runs::Run run, scenes::Kind kind) {
   view.held = view.run.status() == runs::Status::at_rest;
   view.law = laws::law_named(view.model);
   view.fluid = view.law && !laws::can_rest(*view.law);
-  if (const std::string verdict = word(info, "/verdict"); verdict.starts_with("noisy")) {
-    view.noisy = true;
-    const auto colon = verdict.find(": ");
-    view.noise = colon == std::string::npos ? "no reason given" : verdict.substr(colon + 2);
-  }
+  view.doubt = runs::doubt_of(word(info, "/verdict"));
   if (kind == scenes::Kind::duct) centre_duct_profiles(view.run);
   view.gauges = runs::gauges_of(view.run);
   view.gauge = gauge_series(view.run, kind);

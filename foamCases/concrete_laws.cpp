@@ -157,7 +157,7 @@ std::string lifted_gate(const Gate& gate) {
 /// What is done to the concrete after every step, or read off it.
 std::string after_every_step(const Scene& scene, bool plug_in) {
   std::string text;
-  if (plug_in && is_vessel(scene))
+  if (plug_in && writes_shear_rate(scene))
     text += function_object(
         "shearRate", fmt::format("        strainRate      {};\n", scenes::to_string(scene.foam.strain_rate)));
   if (plug_in && scene.kind() == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
@@ -186,9 +186,13 @@ std::string stress_model(const Scene& scene, bool plug_in) {
 
 }  // namespace
 
+bool writes_shear_rate(const Scene& scene) {
+  return is_vessel(scene) || scene.base.law == scenes::Wall::friction;
+}
+
 std::string concrete_laws(const Scene& scene, bool plug_in) {
   std::string sampled, state;
-  if (plug_in && is_vessel(scene)) sampled += " shearRate";
+  if (plug_in && writes_shear_rate(scene)) sampled += " shearRate";
   if (plug_in && carries_flocculation(scene)) sampled += " flocculation";
   if (laws::can_rest(scene.material.model)) {
     sampled += " plasticShearRate";

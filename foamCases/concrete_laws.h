@@ -12,4 +12,8 @@ namespace flowrest::foam {
 /// OpenFOAM's.
 std::string concrete_laws(const scenes::Scene&, bool plug_in);
 
+/// Whether a case takes the shear rate from the plug-in: elsewhere it follows from the velocities, as
+/// vessels' cells and walls with friction do not let it.
+bool writes_shear_rate(const scenes::Scene&);
+
 }  // namespace flowrest::foam

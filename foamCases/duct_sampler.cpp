@@ -12,7 +12,9 @@
 namespace flowrest::foam {
 
 DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
-    : Sampler(scene, std::move(fields), writer, plug_in), height_(duct_cells(scene)) {
+    : Sampler(scene, std::move(fields), writer, plug_in),
+      walls_(scenes::pieces_of(scene), 2),
+      height_(duct_cells(scene)) {
   for (std::size_t i = 0; i < height_.size(); ++i)
     height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
 }
@@ -43,6 +45,7 @@ void DuctSampler::sample(double time, const ReadField& read) {
     row.add(runs::column::time, time)
         .add(runs::column::plug_velocity, plug_velocity_)
         .add(runs::column::mean_velocity, mean_velocity_)
+        .add(resolution_until(time, sheared_layer(velocity, spacing)))
         .add(steps_until(time));
     if (thixotropic())
       row.add(runs::column::flocculation,
@@ -50,6 +53,19 @@ void DuctSampler::sample(double time, const ReadField& read) {
     writer().history(row);
   }
   if (profile_is_due(time)) writer().profile(time, height_, velocity);
+}
+
+/// Faces between cells have the mean of both, those on the plates none of it. Of a metre square of the
+/// plates.
+runs::ShearedLayer DuctSampler::sheared_layer(const std::vector<double>& velocity, double spacing) const {
+  runs::LayerMeter meter;
+  for (std::size_t i = 0; i < cells(); ++i) {
+    const double below = i == 0 ? 0.0 : 0.5 * (velocity[i - 1] + velocity[i]);
+    const double above = i + 1 == cells() ? 0.0 : 0.5 * (velocity[i] + velocity[i + 1]);
+    meter.add({walls_.distance(0.0, 0.0, height_[i]), spacing, spacing, spacing,
+               std::abs(above - below) / spacing});
+  }
+  return meter.layer();
 }
 
 std::string DuctSampler::progress() const { return fmt::format("plug {:.4g} m/s", plug_velocity_); }

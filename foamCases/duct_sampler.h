@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "foamCases/sampler.h"
+#include "runs/held_walls.h"
 
 namespace flowrest::foam {
 
@@ -21,6 +22,10 @@ class DuctSampler : public Sampler {
   void sample(double time, const ReadField&) override;
   double overstressing_rate() const override { return overstressing_rate_; }
 
+  /// Along the plates.
+  runs::ShearedLayer sheared_layer(const std::vector<double>& velocity, double spacing) const;
+
+  runs::HeldWalls walls_;
   std::vector<double> height_;       ///< m, of the cell centres over the lower plate
   double plug_velocity_ = 0.0;       ///< m/s, the mean of the innermost two cells
   double mean_velocity_ = 0.0;       ///< m/s

@@ -34,7 +34,9 @@
 #include "runs/rest.h"
 #include "runs/run_folder.h"
 #include "runs/temporary_folder.h"
+#include "runs/verdict.h"
 #include "scenes/cost.h"
+#include "scenes/pieces.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::foam {
@@ -191,8 +193,13 @@ class CaseRun {
     if (fault_ == runs::Fault::machine) throw runs::MachineError(what);
     throw runs::NumericsError(what);
   }
-  /// Of the noise, and of what the flow must keep.
+  /// Of the noise, of what the flow must keep, and of what the cells must resolve.
   std::string verdict() const {
+    const std::string unresolved =
+        sampler_ ? sampler_->resolution().fault(passage_ / scene_.foam.cell, std::nullopt) : "";
+    return runs::with_resolution(noise_verdict(), unresolved);
+  }
+  std::string noise_verdict() const {
     const std::string noise = monitor_.verdict(), doubt = sampler_ ? sampler_->doubt() : "";
     if (doubt.empty()) return noise;
     return noise.starts_with("noisy") ? fmt::format("{}; {}", noise, doubt) : "noisy: " + doubt;
@@ -483,6 +490,7 @@ class CaseRun {
     info["cell_steps_per_cpu_s"] = static_cast<double>(steps_ * cells()) / cpu;
     info["cpu_s_per_simulated_s"] = time() > 0.0 ? Json(cpu / time()) : Json();
     const auto growth = rest_.growth_to_come();
+    info["resolution"] = sampler_ ? sampler_->resolution().json() : Json();
     info["growth_to_come"] = growth ? Json(*growth) : Json();
     const auto rest_time = rest_.rest_time();
     info["rest_time_s"] = rest_time ? Json(*rest_time) : Json();  // a fluid has none
@@ -516,6 +524,7 @@ class CaseRun {
   std::unique_ptr<Sampler> sampler_;
   SolverLog log_{solved_components(scene_)};
   NoiseMonitor monitor_{scene_.body_height()};
+  double passage_ = scenes::pieces_of(scene_).passage;  ///< m, the narrowest
   Status status_ = Status::running;
   runs::Fault fault_ = runs::Fault::other;
   std::string reason_;

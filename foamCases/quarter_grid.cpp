@@ -178,7 +178,7 @@ std::vector<double> shear_rate(const QuarterGrid& grid, const std::vector<double
 SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, double density, bool slip) {
   SlumpGauges gauges;
   runs::RadialDepthAccumulator rings(grid.width, grid.side * grid.width);
-  const auto rate = shear_rate(grid, fields.velocity, slip);
+  const auto rate = fields.shear_rate.empty() ? shear_rate(grid, fields.velocity, slip) : fields.shear_rate;
   ConcreteRates inside;
   std::vector<runs::Weighted> at_base;
   for_each_cell(grid, [&](const std::array<int, 3>& cell) {
@@ -191,6 +191,9 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
     if (concrete > 0.0) rings.add(std::hypot(grid.centre(i), grid.centre(j)), concrete);
     if (fields.fraction[index] < nearly_full) return;
     inside.add(rate[index], concrete, fields.flocculation, index);
+    if (!slip)
+      gauges.layer.add(
+          {grid.row_centre(row), grid.row_height(row), grid.row_height(row), concrete, rate[index]});
     if (row == 0) at_base.emplace_back(std::hypot(u[0], u[1]) / (0.5 * grid.row_height(0)), 1.0);
   });
   const auto depth = rings.depth();

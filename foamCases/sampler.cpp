@@ -64,6 +64,10 @@ runs::Row Sampler::steps_until(double time) {
   return row.add(runs::column::courant, steps.courant).add(runs::column::time_step, steps.time_step);
 }
 
+runs::Row Sampler::resolution_until(double time, const runs::ShearedLayer& layer) {
+  return resolution_.add(time, layer);
+}
+
 void Sampler::sample_before(double complete_before, const std::function<void()>& after_each) {
   for (const auto& [time, name] : fields_.times()) {
     if (time >= complete_before) return;
@@ -80,6 +84,7 @@ void Sampler::sample_before(double complete_before, const std::function<void()>&
 void Sampler::continue_from(const runs::Table& history) {
   if (history.rows() == 0) return;
   last_sampled_ = history.at("time_s").back();
+  resolution_.continue_from(history);
   history_clock_.continue_from(*last_sampled_);
   if (const auto profile = writer_.last_profile()) profile_clock_.continue_from(*profile);
 }

@@ -12,6 +12,7 @@
 #include "foamCases/case_fields.h"
 #include "foamCases/solver_log.h"
 #include "runs/columns.h"
+#include "runs/resolution.h"
 #include "runs/rest.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
@@ -68,6 +69,8 @@ class Sampler {
   virtual std::string fault() const = 0;
   /// Why the answer is in doubt for what was sampled; empty where it is not.
   virtual std::string doubt() const = 0;
+  /// How the cells resolve what is sheared, by the rows so far.
+  const runs::Resolution& resolution() const { return resolution_; }
   /// The last gauges, for run.json.
   virtual nlohmann::ordered_json summary() const = 0;
 
@@ -86,6 +89,8 @@ class Sampler {
   /// What a row says of the steps since the last: the largest residual, chatter and Courant number, and the
   /// last step.
   runs::Row steps_until(double time);
+  /// What a row says of the layer that is sheared, which the run's resolution is judged by.
+  runs::Row resolution_until(double time, const runs::ShearedLayer&);
   /// Whether rows tell of flocculation.
   bool thixotropic() const;
   /// The field of the flocculation, as it is at the start while the solver has not written it yet.
@@ -104,6 +109,7 @@ class Sampler {
   bool plug_in_;
   std::optional<double> last_sampled_;
   RowClock history_clock_, profile_clock_;
+  runs::Resolution resolution_;
   std::deque<SolverStep> steps_;  ///< not yet in a row
 };
 

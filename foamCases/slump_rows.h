@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "scenes/scene.h"
 
 /// The rows of cells of a slump's mesh, whatever its plan: their height changes over the base layer and at
@@ -18,6 +20,12 @@ struct SlumpRows {
   double row_height(int row) const {
     if (row < base_rows) return base_row_height;
     return row < base_rows + cone_rows ? cone_row_height : air_row_height;
+  }
+  /// m, over the base
+  double row_centre(int row) const {
+    const int base = std::min(row, base_rows), cone = std::clamp(row - base_rows, 0, cone_rows);
+    return base * base_row_height + cone * cone_row_height + (row - base - cone) * air_row_height +
+           0.5 * row_height(row);
   }
   double base_height() const { return base_rows * base_row_height; }  ///< m, of the base layer
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "foamCases/concrete_laws.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
 
@@ -18,6 +19,7 @@ SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::
 
 void SlumpSampler::sample(double time, const ReadField& read) {
   SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
+  if (plug_in() && time > 0.0 && writes_shear_rate(scene())) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) {
     fields.flocculation = flocculation(time, read);
     state_.flocculation = mesh_->mean_over_concrete(fields.fraction, fields.flocculation);
@@ -48,6 +50,7 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
       .add(kinetic_energy, gauges.kinetic_energy)
       .add(runs::column::shear_rate, gauges.shear_rate_p99)
       .add(base_shear_rate, gauges.base_shear_rate_p99)
+      .add(resolution_until(time, gauges.layer.layer()))
       .add(steps_until(time))
       .add(trapped_air, gauges.trapped_air)
       .add(volume_error, conservation_.error());

@@ -58,6 +58,7 @@ double quantile(const Bins& bins, double share) {
 VesselGauge::VesselGauge(const scenes::Scene& scene)
     : scene_(scene),
       pieces_(scenes::pieces_of(scene)),
+      walls_(pieces_, scene.spatial_dimension()),
       cells_(mesh_cells(vessel_mesh(scene))),
       factor_(whole_over_mesh(scene)) {}
 
@@ -77,7 +78,13 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
     gauges.kinetic_energy += 0.5 * density * concrete * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     gauges.potential_energy += density * scene_.forces.gravity * concrete * cell.centre()[2];
     if (fields.fraction[i] < nearly_full) continue;
-    if (!fields.shear_rate.empty()) inside.add(fields.shear_rate[i], concrete, fields.flocculation, i);
+    if (!fields.shear_rate.empty()) {
+      inside.add(fields.shear_rate[i], concrete, fields.flocculation, i);
+      const auto at = cell.centre();
+      // Cells over an outlet narrow towards it; those of other vessels are cubes.
+      const double size = pieces_.runs_out ? cell.high[0] - cell.low[0] : scene_.foam.cell;
+      gauges.layer.add({walls_.distance(at[0], at[1], at[2]), size, size, concrete, fields.shear_rate[i]});
+    }
     const double height = cell.high[2] - cell.low[2];
     if (held && cell.low[2] < 1e-6 * scene_.foam.cell)
       at_floor.emplace_back(std::hypot(u[0], u[1]) / (0.5 * height), cell.volume / height);

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "foamCases/block_mesh.h"
+#include "runs/held_walls.h"
+#include "runs/sheared_layer.h"
 #include "scenes/pieces.h"
 #include "scenes/scene.h"
 
@@ -28,8 +30,9 @@ struct VesselGauges {
   /// 1/s, the same of the shear rate over 1 + flocculation: what overstresses the material.
   double overstressing_rate_p99 = 0.0;
   double base_shear_rate_p99 =
-      0.0;             ///< 1/s, velocity along the floor over half a cell, of cells at least 90 % full
-  double front = 0.0;  ///< m, from the gate or the tank's corner
+      0.0;                 ///< 1/s, velocity along the floor over half a cell, of cells at least 90 % full
+  runs::LayerMeter layer;  ///< of cells at least 90 % full; empty where nobody computes the shear rate
+  double front = 0.0;      ///< m, from the gate or the tank's corner
   double front_mass_995 = 0.0;  ///< m, the same of 99.5 % of the concrete
   double end_height = 0.0;      ///< m, depth at the far end
   double start_height = 0.0;    ///< m, depth at the back wall
@@ -56,6 +59,7 @@ class VesselGauge {
 
   const scenes::Scene& scene_;
   scenes::Pieces pieces_;
+  runs::HeldWalls walls_;
   std::vector<MeshCell> cells_;
   double factor_;  ///< whole body over what the mesh holds
 };

@@ -48,6 +48,7 @@ void VesselSampler::write_history(double time) {
       .add(potential_energy, now_.potential_energy);
   if (plug_in()) row.add(shear_rate, now_.shear_rate_p99);
   row.add(base_shear_rate, now_.base_shear_rate_p99)
+      .add(resolution_until(time, now_.layer.layer()))
       .add(steps_until(time))
       .add(volume_error, conservation_.error());
   if (thixotropic()) row.add(runs::column::flocculation, flocculation_);

@@ -73,15 +73,19 @@ double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction
   return runs::nothing;
 }
 
+/// The shear rates within the concrete, and the layer along the base in which it is sheared.
 void gauge_shear_rates(const WedgeGrid& grid, const SlumpFields& fields, bool slip, SlumpGauges& gauges) {
-  const auto rate = shear_rate(grid, fields.velocity, slip);
+  const auto rate = fields.shear_rate.empty() ? shear_rate(grid, fields.velocity, slip) : fields.shear_rate;
   ConcreteRates in_concrete;
   for (int row = 0; row < grid.rows(); ++row)
     for (int ring = 0; ring < grid.rings; ++ring) {
       const auto cell = grid.index(ring, row);
-      if (fields.fraction[cell] >= nearly_full)
-        in_concrete.add(rate[cell], fields.fraction[cell] * grid.cell_volume(ring, row), fields.flocculation,
-                        cell);
+      if (fields.fraction[cell] < nearly_full) continue;
+      const double concrete = fields.fraction[cell] * grid.cell_volume(ring, row);
+      in_concrete.add(rate[cell], concrete, fields.flocculation, cell);
+      if (!slip)
+        gauges.layer.add(
+            {grid.row_centre(row), grid.row_height(row), grid.row_height(row), concrete, rate[cell]});
     }
   gauges.shear_rate_p99 = in_concrete.percentile();
   gauges.overstressing_rate_p99 = in_concrete.overstressing_percentile();

@@ -5,6 +5,7 @@
 
 #include "foamCases/wedge_grid.h"
 #include "runs/depth.h"
+#include "runs/sheared_layer.h"
 
 /// What is measured of a slump's fields on the wedge grid, scaled to the full circle.
 namespace flowrest::foam {
@@ -15,6 +16,9 @@ struct SlumpFields {
   std::vector<double> fraction;
   std::vector<double> velocity;
   std::vector<double> flocculation = {};
+  /// 1/s, as the plug-in has it, which knows how far a wall with friction holds; where it is empty it is
+  /// computed as `shear_rate` does.
+  std::vector<double> shear_rate = {};
 };
 
 /// What has nothing to read is `runs::nothing`.
@@ -33,6 +37,7 @@ struct SlumpGauges {
       runs::nothing;  ///< m, twice the radius at which the base row is half full; nothing where it nowhere is
   double trapped_air = 0.0;  ///< m3, of air with fuller cells above it
   double rim_depth = 0.0;    ///< m, depth in the outermost ring
+  runs::LayerMeter layer;    ///< of cells at least 90 % full
 };
 
 /// `slip` says that the base does not hold the concrete back, which the shear rate in the lowest row needs.

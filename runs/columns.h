@@ -142,6 +142,20 @@ inline constexpr Column shear_rate = {.name = "shear_rate_p99_1_s",
                                       .unit = "1/s",
                                       .meaning = "shear rate that one per cent of the mass exceeds",
                                       .may_be_empty = true};
+inline constexpr Column sheared_layer = {
+    .name = "sheared_layer_mm",
+    .unit = "mm",
+    .meaning = "thickness of the layer along walls that hold in which the material is sheared",
+    .per_si = 1e3,
+    .may_be_empty = true};
+inline constexpr Column sheared_layer_cells = {.name = "sheared_layer_cells",
+                                               .unit = "",
+                                               .meaning = "cells over the sheared layer",
+                                               .may_be_empty = true};
+inline constexpr Column mean_shear_rate = {.name = "shear_rate_mean_1_s",
+                                           .unit = "1/s",
+                                           .meaning = "shear rate, the mean over the material",
+                                           .may_be_empty = true};
 inline constexpr Column base_shear_rate = {
     .name = "base_shear_rate_p99_1_s",
     .unit = "1/s",

@@ -89,8 +89,8 @@ class RunWriter {
   /// run.json: any key may be set; written out by `write` and by `finish`.
   nlohmann::ordered_json& info() { return info_; }
   void write();
-  /// Writes the final run.json: status, reason (may be empty) and verdict ("sound" or "noisy: why"). A run
-  /// that failed is never sound, whatever the verdict says.
+  /// Writes the final run.json: status, reason (may be empty) and verdict: "sound", or what is in doubt and
+  /// why (runs/verdict.h). A run that failed is never sound, whatever the verdict says.
   void finish(Status, const std::string& reason, const std::string& verdict);
   /// The same of a run that failed: its verdict is that of the failure, or the one given where that knows of
   /// noise.

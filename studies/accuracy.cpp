@@ -134,8 +134,8 @@ Json knowledge_json(const Results& results) {
   const scenes::Scene* scene = nullptr;
   std::string made_by;
   for (const Result& r : results.results) {
-    if (r.point.role != Point::Role::point || r.point.solver != Solver::mpm || r.verdict != Verdict::sound ||
-        !r.errors.contains(quantity) || !is_means(r))
+    if (r.point.role != Point::Role::point || r.point.solver != Solver::mpm ||
+        !is_worth_its_error(r.verdict) || !r.errors.contains(quantity) || !is_means(r))
       continue;
     if (scene && scene->geometry.dimension != r.point.scene->geometry.dimension) continue;
     // Held against a reference of another law, an error is the law's and no setting mends it.

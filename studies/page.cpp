@@ -312,6 +312,7 @@ class StudyPage {
       case Verdict::stopped:
       case Verdict::too_long:
         return Map::Verdict::stopped;
+      case Verdict::under_resolved:
       case Verdict::noisy:
       case Verdict::missing:
         return Map::Verdict::warning;

@@ -9,6 +9,7 @@
 
 #include "compare/exact/exact_run.h"
 #include "compare/words.h"
+#include "runs/verdict.h"
 #include "scenes/text.h"
 #include "studies/quantities.h"
 #include "studies/soundness.h"
@@ -50,11 +51,12 @@ void describe_run(Result& r, const runs::Run& run) {
 void judge(Result& r, const runs::Run& run) {
   const std::string verdict = run.info.value("verdict", "");
   const std::string wrong = unsound(run, *r.point.scene);
-  if (!wrong.empty() && (verdict == "sound" || verdict.find("under-resolved") != std::string::npos)) {
+  const runs::Doubt doubt = runs::doubt_of(verdict);
+  if (!wrong.empty() && (verdict == "sound" || doubt.under_resolved)) {
     r.verdict = Verdict::unsound;  // too few cells are no excuse for what cannot be
     r.reason = wrong;
   } else if (verdict != "sound") {
-    r.verdict = Verdict::noisy;
+    r.verdict = doubt.under_resolved && !doubt.noisy ? Verdict::under_resolved : Verdict::noisy;
     r.reason = wrong.empty() ? verdict : fmt::format("{}; {}", verdict, wrong);
   } else {
     r.verdict = Verdict::sound;
@@ -92,7 +94,7 @@ Read read_point(const Folder& folder, const Point& point) {
 }
 
 bool is_usable(const Read& read) {
-  return read.run && (read.result.verdict == Verdict::sound || read.result.verdict == Verdict::noisy);
+  return read.run && (is_worth_its_error(read.result.verdict) || read.result.verdict == Verdict::noisy);
 }
 
 /// The reference's runs and what they say.
@@ -236,13 +238,6 @@ void add_errors(Result& r, const runs::Run& run, const Study& study, const Refer
   }
 }
 
-/// Coarse runs belong to the trade as much as fine ones: their error says what they are worth. What is noisy
-/// for another reason may be right by chance.
-bool may_lead(const Result& r) {
-  return r.verdict == Verdict::sound ||
-         (r.verdict == Verdict::noisy && r.reason.find("under-resolved") != std::string::npos);
-}
-
 /// The reference's uncertainty as a share of its value: what an error cannot be told from.
 double relative_uncertainty(const std::string& quantity, const ReferenceValue& reference) {
   if (is_difference(quantity)) return reference.uncertainty.value_or(0.0);
@@ -255,7 +250,7 @@ void mark_pareto(Results& results, const std::string& quantity, Solver solver) {
   std::vector<Result*> candidates;
   for (Result& r : results.results)
     if (r.point.role == Point::Role::point && r.point.solver == solver && r.errors.contains(quantity) &&
-        may_lead(r))
+        is_worth_its_error(r.verdict))
       candidates.push_back(&r);
   const double floor = relative_uncertainty(quantity, results.reference.at(quantity));
   const auto seen = [&](const Result* r) { return std::max(r->errors.at(quantity), floor); };
@@ -435,7 +430,7 @@ void find_findings(Results& results) {
     for (const Solver solver : {Solver::mpm, Solver::foam}) {
       const Result* cheapest = nullptr;
       for (const Result& r : results.results)
-        if (r.point.role == Point::Role::point && r.point.solver == solver && may_lead(r) &&
+        if (r.point.role == Point::Role::point && r.point.solver == solver && is_worth_its_error(r.verdict) &&
             r.errors.contains(*main) && r.errors.at(*main) <= bound && (!cheapest || r.cpu < cheapest->cpu))
           cheapest = &r;
       if (cheapest)
@@ -448,10 +443,16 @@ void find_findings(Results& results) {
 
 }  // namespace
 
+bool is_worth_its_error(Verdict verdict) {
+  return verdict == Verdict::sound || verdict == Verdict::under_resolved;
+}
+
 std::string to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::sound:
       return "sound";
+    case Verdict::under_resolved:
+      return "under-resolved";
     case Verdict::noisy:
       return "noisy";
     case Verdict::refused:

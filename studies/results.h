@@ -24,15 +24,19 @@ struct ReferenceValue {
 /// What became of one point.
 enum class Verdict {
   sound,
-  noisy,    ///< by its own verdict
-  refused,  ///< with a reason, before it began
-  stopped,  ///< with a reason and its data
-  unsound,  ///< it calls itself sound and is not: silently wrong
+  under_resolved,  ///< by its own verdict, and no worse
+  noisy,           ///< by its own verdict
+  refused,         ///< with a reason, before it began
+  stopped,         ///< with a reason and its data
+  unsound,         ///< it calls itself sound and is not: silently wrong
   crashed,
   too_long,
   missing
 };
 std::string to_string(Verdict);
+/// Whether its error says what a run is worth. Coarse runs belong to the trade as much as fine ones; what is
+/// noisy may be right by chance.
+bool is_worth_its_error(Verdict);
 
 struct Result {
   Point point;

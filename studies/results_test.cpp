@@ -44,14 +44,14 @@ class StudyResults : public testing::Test {
   void TearDown() override { fs::remove_all(folder.root); }
 
   /// A run that spreads to `spread` mm for `cpu` s.
-  void write_run(const Point& point, double spread, double cpu,
-                 runs::Status status = runs::Status::end_time) {
+  void write_run(const Point& point, double spread, double cpu, runs::Status status = runs::Status::end_time,
+                 const std::string& verdict = "sound") {
     runs::RunWriter writer(folder.run(point.id), *point.scene, "mpm");
     writer.history_columns({"time_s", "spread_mm", "volume_m3", "volume_at_rest_m3"});
     for (const double t : {0.0, 1.0})
       writer.history(std::vector{t, t < 0.5 ? 200.0 : spread, 5.4e-3, 5.5e-3});
     writer.info()["cpu_s"] = cpu;
-    writer.finish(status, status == runs::Status::failed ? "the step is unstable" : "", "sound");
+    writer.finish(status, status == runs::Status::failed ? "the step is unstable" : "", verdict);
   }
 
   void mark(const Point& point, const std::string& ending) {
@@ -87,6 +87,28 @@ TEST_F(StudyResults, ErrorsAreRelativeAndTheFrontIsWhatNothingCheaperMatches) {
   EXPECT_THAT(results.findings,
               testing::Contains(HasSubstr("spread_mm within 1.0 %: MPM, cell 0.005, precision "
                                           "double for 20 s of CPU")));
+}
+
+TEST_F(StudyResults, AnUnderResolvedRunIsWorthItsErrorAndANoisyOneIsNot) {
+  const std::string verdicts[] = {"under-resolved: 3.3 cells over the sheared layer", "noisy: it chatters",
+                                  "noisy: it chatters; under-resolved: 3.3 cells"};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    write_run(points[i], 500.0, static_cast<double>(i + 1), runs::Status::end_time,
+              i < 3 ? verdicts[i] : "sound");
+    mark(points[i], "finished");
+  }
+  const Results results = collect(folder, study, points, "");
+  EXPECT_EQ(results.results[0].verdict, Verdict::under_resolved);
+  EXPECT_EQ(results.results[0].reason, verdicts[0]);
+  EXPECT_TRUE(results.results[0].pareto.at("spread_mm"));
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_EQ(results.results[i].verdict, Verdict::noisy);
+    EXPECT_FALSE(results.results[i].pareto.contains("spread_mm"));
+  }
+  write_results(folder, results);
+  std::ifstream csv(folder.root / "points.csv");
+  const std::string table{std::istreambuf_iterator<char>(csv), {}};
+  EXPECT_THAT(table, HasSubstr(",under-resolved,"));
 }
 
 TEST_F(StudyResults, APriceIsTheMedianOverPairsThatDifferInNothingElse) {

@@ -12,6 +12,7 @@
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/test_scene.h"
+#include "runs/verdict.h"
 
 namespace flowrest {
 namespace {
@@ -122,7 +123,7 @@ TEST_F(FoamDuct, SteppedDownBelowYieldAFluidCreepsOn) {
   const auto fluid = compare::exact::regularised_fluid(scenes::Model::papanastasiou, 100.0, viscosity, 10.0);
   const double expected = compare::exact::duct_creep(fluid, height, 360.0);
   EXPECT_NEAR(result.history.at("plug_velocity_m_s").back(), expected, 0.05 * expected);
-  EXPECT_EQ(result.info["verdict"], "sound");
+  EXPECT_FALSE(runs::doubt_of(result.info["verdict"]).noisy);
 }
 
 }  // namespace

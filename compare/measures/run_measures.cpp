@@ -110,8 +110,8 @@ Cause cause_of(const RunView& view, const Thresholds& thresholds, double rest_sp
   if (!view.fluid)
     return speed <= rest_speed ? Cause::at_rest : view.held ? Cause::within_bound : Cause::approaching_rest;
   const bool explained = m.predicted_creep && speed <= thresholds.creep_factor * *m.predicted_creep;
-  if (explained) return view.noisy ? Cause::creep_or_noise : Cause::creep;
-  if (view.noisy) return Cause::noise;
+  if (explained) return view.doubt.noisy ? Cause::creep_or_noise : Cause::creep;
+  if (view.doubt.noisy) return Cause::noise;
   return m.predicted_creep ? Cause::unexplained : Cause::unknown;
 }
 
@@ -162,7 +162,7 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
     const bool rests = other.held || other.measures.cause == Cause::at_rest;
     if (comparison.kind != scenes::Kind::slump && !rests) continue;
     const int score = 4 * (other.held || other.measures.cause == Cause::at_rest) +
-                      2 * (other.solver == view.solver) + !other.noisy;
+                      2 * (other.solver == view.solver) + !other.doubt.any();
     if (score > best_score) {
       best = &other;
       best_score = score;

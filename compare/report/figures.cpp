@@ -57,7 +57,7 @@ std::string axis_name(const Axis& axis) {
 }
 
 std::string name_of(const Entry& entry) {
-  return entry.name + (entry.noise.empty() ? "" : " (noisy)") +
+  return entry.name + (entry.doubt.empty() ? "" : fmt::format(" ({})", entry.doubt)) +
          (entry.trouble.empty() ? "" : " (incomplete)");
 }
 

@@ -25,7 +25,8 @@ struct Entry {
   std::string name = {};  ///< unique in the page
   int colour = 0;  ///< of a colour-blind safe palette of seven; -1 is ink, for what is exact or measured
   int dash = 0;    ///< solid, dashed, dotted, dash-dotted, ...: eight
-  std::string noise = {};    ///< why it is noisy or not converged; empty where it is sound
+  std::string doubt = {};    ///< "noisy", "under-resolved" or both; empty where it is sound
+  std::string why = {};      ///< it is in doubt
   std::string trouble = {};  ///< why it is incomplete; empty where it came to its end
 };
 

@@ -315,7 +315,8 @@ Json page_json(const Page& page, const std::vector<const Block*>& figures) {
     json["entries"].push_back({{"name", entry.name},
                                {"colour", entry.colour},
                                {"dash", entry.dash},
-                               {"noise", entry.noise},
+                               {"doubt", entry.doubt},
+                               {"why", entry.why},
                                {"trouble", entry.trouble}});
   for (const Block* figure : figures) {
     Json block = std::visit(

@@ -331,7 +331,8 @@ report::Page large_page(int scenes) {
     const int index = static_cast<int>(page.entries.size());
     page.entries.push_back({.name = name, .colour = index % 2, .dash = index / 2});
   }
-  page.entries.back().noise = "the residual rose";
+  page.entries.back().doubt = "noisy";
+  page.entries.back().why = "the residual rose";
   page.words = {report::Text{"Thirty scenes hold.", report::Text::Style::opening}};
   report::Plot pareto{
       .id = "pareto", .title = "error against cost", .x = {"CPU time", "s", true}, .y = {"error", "%", true}};
@@ -413,6 +414,11 @@ TEST_F(ReportTest, FiguresForPapersAreDrawnAndCanBeDrawnAgain) {
   EXPECT_THAT(text_of(folder / "figures" / "scene-0-spread.svg"),
               testing::AllOf(HasSubstr("All scenes: scene-0"), HasSubstr("spread (mm)"),
                              HasSubstr("OpenFOAM fluid (noisy)")));
+  auto coarse = large_page(1);
+  coarse.entries.back().doubt = "under-resolved";
+  report::write_figures(coarse, folder / "coarse");
+  EXPECT_THAT(text_of(folder / "coarse" / "scene-0-spread.svg"),
+              HasSubstr("OpenFOAM fluid (under-resolved)"));
   EXPECT_THAT(text_of(folder / "figures" / "pareto.png"), testing::StartsWith("\x89PNG"));
   EXPECT_GT(fs::file_size(folder / "figures" / "pareto.png"), 10'000u);
   EXPECT_TRUE(fs::exists(folder / "figures" / "figures.gp"));

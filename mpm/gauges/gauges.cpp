@@ -60,26 +60,55 @@ class Sums {
   std::vector<runs::Weighted> rates_, overstresses_;
 };
 
+/// The layer along the walls that is sheared: no list of particles, only bins over the distance.
+class Layer {
+ public:
+  Layer(const scenes::Scene& scene, const runs::HeldWalls& walls, double cell)
+      : walls_(walls), cell_(cell), extent_(cell / scene.mpm.particles_per_cell.back()) {}
+
+  void add(const ParticleBatch& b, std::size_t vertical) {
+    if (!walls_.any()) return;
+    for (std::size_t i = 0; i < b.count; ++i) {
+      const double across = vertical == 2 ? b.position[1][i] : 0.0;
+      meter_.add({walls_.distance(b.position[0][i], across, b.position[vertical][i]), extent_, cell_,
+                  b.volume[i], b.rate[i]});
+    }
+  }
+  runs::ShearedLayer finish() const { return meter_.layer(); }
+
+ private:
+  const runs::HeldWalls& walls_;
+  double cell_, extent_;  ///< m, of a cell and of what a particle takes up of it
+  runs::LayerMeter meter_;
+};
+
 }  // namespace
 
 Gauges::Gauges(const scenes::Scene& scene, const scenes::Pieces& pieces)
-    : scene_(scene), pieces_(pieces), rest_(scene), cell_(cell_size(scene)) {}
+    : scene_(scene),
+      pieces_(pieces),
+      rest_(scene),
+      held_walls_(pieces, scene.spatial_dimension()),
+      cell_(cell_size(scene)) {}
 
 Measures Gauges::measure(Solver& solver) const {
   const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
+  Layer layer(scene_, held_walls_, cell_);
   const auto gauge = body_gauge({scene_, pieces_, cell_, vertical});
   gauge->begin(solver);
   Sums sums(scene_, pieces_.whole_over_computed, rest_, solver.particle_count());
   solver.visit([&](const ParticleBatch& b) {
     sums.add(b, vertical);
+    layer.add(b, vertical);
     gauge->add(b);
   });
   Measures m = sums.finish();
   m.body = gauge->finish();
+  m.layer = layer.finish();
   return m;
 }
 
-runs::Row Gauges::row(double time, double step, const Measures& m) const {
+runs::Row Gauges::row(double time, double step, const Measures& m, const runs::Row& layer) const {
   using namespace runs::column;
   const Energies& e = m.energies;
   runs::Row row;
@@ -93,6 +122,7 @@ runs::Row Gauges::row(double time, double step, const Measures& m) const {
       .add(dissipated_energy, e.dissipated)
       .add(numerical_energy, e.numerical)
       .add(shear_rate, m.shear_rate_p99)
+      .add(layer)
       .add(time_step, step);
   if (scene_.thixotropy) row.add(flocculation, m.flocculation_mean);
   return row;

@@ -6,7 +6,9 @@
 #include "mpm/gauges/body_gauge.h"
 #include "mpm/solver/solver.h"
 #include "runs/columns.h"
+#include "runs/held_walls.h"
 #include "runs/rest.h"
+#include "runs/sheared_layer.h"
 #include "scenes/pieces.h"
 
 namespace flowrest::mpm {
@@ -24,6 +26,7 @@ struct Measures {
   double volume_at_rest = 0.0;  ///< m3, what the mass fills without pressure
   double shear_rate_p99 = 0.0;  ///< 1/s, exceeded by one per cent of the mass
   double overstress_p99 = 0.0;  ///< exceeded by one per cent of the mass (runs/rest.h)
+  runs::ShearedLayer layer;     ///< along the walls
   double flocculation_mean = 0.0;
   double highest = 0.0;  ///< m
   BodyReading body;      ///< what the apparatus is judged by
@@ -34,12 +37,14 @@ class Gauges {
  public:
   Gauges(const scenes::Scene&, const scenes::Pieces&);
   Measures measure(Solver&) const;
-  runs::Row row(double time, double step, const Measures&) const;
+  /// `layer`: what the row says of the sheared layer.
+  runs::Row row(double time, double step, const Measures&, const runs::Row& layer) const;
 
  private:
   const scenes::Scene& scene_;
   const scenes::Pieces& pieces_;
   runs::Rest rest_;
+  runs::HeldWalls held_walls_;
   double cell_;
 };
 

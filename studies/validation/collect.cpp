@@ -50,7 +50,7 @@ int entry_index(std::vector<report::Entry>& entries, const Wanted& wanted) {
 /// The name of a run's curve: with its warnings, which are its scene's and not the page's.
 std::string curve_name(const Seen& seen) {
   std::string warnings;
-  if (seen.view->noisy) warnings = "noisy";
+  warnings = seen.view->doubt.word();
   if (!seen.view->trouble.empty()) warnings += warnings.empty() ? "incomplete" : ", incomplete";
   return warnings.empty() ? "" : fmt::format("{} ({})", seen.wanted->label(), warnings);
 }
@@ -87,7 +87,7 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       const Seen* coarse = partner(all, fine, true);
       if (fine.view) {
         n.ours = compare::read(fine.view->run, published.quantity);
-        n.noise = fine.view->noisy ? fine.view->noise : "";
+        n.doubt = fine.view->doubt;
         n.walls_differ = fine.view->walls_differ;
         n.verdict = fine.view->trouble.empty() ? Verdict::never : Verdict::incomplete;
         n.words = fine.view->trouble;
@@ -276,7 +276,7 @@ Found found_run(const Folder& folder, const Seen& seen, const compare::Gauge& ga
   if (!seen.view) return found;
   const RunView& view = *seen.view;
   found.trouble = view.trouble;
-  found.noise = view.noisy ? view.noise : "";
+  found.doubt = view.doubt;
   found.walls_differ = view.walls_differ;
   found.rest = compare::read(view.run, "rest_s");
   found.end = view.measures.end;
@@ -299,7 +299,8 @@ std::vector<std::string> notes_of(const SceneFound& scene, const std::string& le
   for (const Found& found : scene.runs) {
     if (!found.walls_differ.empty() && !found.wanted.coarse)
       walls[found.walls_differ].push_back(found.wanted.label());
-    if (!found.noise.empty()) notes.push_back(fmt::format("{} is noisy: {}.", found.label, found.noise));
+    if (found.doubt.any())
+      notes.push_back(fmt::format("{} is {}: {}.", found.label, found.doubt.word(), found.doubt.why));
     if (!found.trouble.empty()) notes.push_back(fmt::format("{}: {}.", found.label, found.trouble));
     const bool without_data = found.outcome.ending == Ending::refused ||
                               found.outcome.ending == Ending::crashed ||

@@ -52,7 +52,8 @@ void print_numbers(const Validation& validation) {
                  fmt::format("{} {}", n.solver == Solver::mpm ? "MPM" : "OpenFOAM",
                              laws::can_rest(n.model) ? "solid" : scenes::to_string(n.model)),
                  target ? fmt::format("{:.4g} {}", *target, reading.unit) : "-", ours, width,
-                 reading.name + ": " + n.words, n.noise.empty() ? "" : "; noisy: " + n.noise);
+                 reading.name + ": " + n.words,
+                 n.doubt.any() ? fmt::format("; {}: {}", n.doubt.word(), n.doubt.why) : "");
     }
 }
 

@@ -33,7 +33,8 @@ Json number_json(const Number& n) {
           {"verdict", to_string(n.verdict)},
           {"within_allowed", n.within ? Json(*n.within) : Json()},
           {"words", n.words},
-          {"noise", n.noise},
+          {"doubt", n.doubt.word()},
+          {"noise", n.doubt.why},
           {"walls_differ", n.walls_differ}};
 }
 
@@ -60,7 +61,8 @@ Json run_json(const Found& run) {
           {"ending", to_string(run.outcome.ending)},
           {"reason", run.outcome.reason},
           {"trouble", run.trouble},
-          {"noise", run.noise},
+          {"doubt", run.doubt.word()},
+          {"noise", run.doubt.why},
           {"walls_differ", run.walls_differ},
           {"rest_s", value(run.rest)},
           {"arrival_s", value(run.arrival)},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "compare/measures/gauges.h"
@@ -152,18 +153,20 @@ class ValidationPage {
 
   /// What carries a warning: runs that are noisy, came to no end, or have other walls.
   std::string warnings() const {
-    std::vector<std::string> noisy, failed;
+    std::map<std::string, std::vector<std::string>> doubtful;
+    std::vector<std::string> failed;
     for (const SceneFound& scene : validation_.scenes)
       for (const Found& run : scene.runs) {
         const auto note = [&](std::vector<std::string>& names) {
           if (names.empty() || names.back() != scene.name) names.push_back(scene.name);
         };
-        if (!run.noise.empty()) note(noisy);
+        if (run.doubt.any()) note(doubtful[run.doubt.word()]);
         if (run.outcome.ending != Ending::finished && run.outcome.ending != Ending::missing) note(failed);
       }
     std::vector<std::string> parts;
     if (!failed.empty()) parts.push_back("runs of " + some_of(failed, ", ", 3) + " ended without a result");
-    if (!noisy.empty()) parts.push_back("runs of " + some_of(noisy, ", ", 3) + " are noisy");
+    for (const auto& [word, scenes] : doubtful)
+      parts.push_back(fmt::format("runs of {} are {}", some_of(scenes, ", ", 3), word));
     for (const auto& [walls, scenes] : other_walls())
       parts.push_back(
           fmt::format("walls are not the scene's in {} run{}: {}", scenes, scenes == 1 ? "" : "s", walls));
@@ -468,7 +471,7 @@ class ValidationPage {
     }
     std::string words = n.words;
     if (!n.walls_differ.empty() && n.ours) words += "; walls differ: " + n.walls_differ;
-    if (!n.noise.empty()) words += "; noisy: " + n.noise;
+    if (n.doubt.any()) words += fmt::format("; {}: {}", n.doubt.word(), n.doubt.why);
     Table::Row row{{p.scene, compare::reading_named(p.quantity).name, who(n), short_verdict(n),
                     known(p.measured), known(p.paper), worded(n.ours, n.uncertainty, unit, n.grain), apart,
                     plain(p.allowed, unit), grids, to_string(p.mark), words, p.source},
@@ -476,7 +479,7 @@ class ValidationPage {
     std::vector<std::string> badges;
     if (n.verdict != Verdict::agrees && n.verdict != Verdict::not_comparable)
       badges.push_back(short_verdict(n));
-    if (!n.noise.empty()) badges.emplace_back("noisy");
+    if (n.doubt.any()) badges.push_back(n.doubt.word());
     if (!n.walls_differ.empty()) badges.emplace_back("other walls");
     row.badge = fmt::format("{}", fmt::join(badges, ", "));
     return row;
@@ -701,9 +704,7 @@ class ValidationPage {
                                run.cpu > 0.0 ? Table::Cell(run.cpu) : Table::Cell(),
                                run.version.substr(0, 12), "runs/" + run.wanted.point.id},
                               entry_of(run.wanted.label()),
-                              !whole              ? to_string(run.outcome.ending)
-                              : run.noise.empty() ? ""
-                                                  : "noisy"});
+                              whole ? run.doubt.word() : to_string(run.outcome.ending)});
       }
     chapter.blocks.push_back(std::move(table));
     chapter.blocks.push_back(

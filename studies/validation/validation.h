@@ -10,6 +10,7 @@
 #include "compare/measures/series.h"
 #include "compare/report/page.h"
 #include "compare/words.h"
+#include "runs/verdict.h"
 #include "studies/job.h"
 #include "studies/validation/published.h"
 #include "studies/workflow.h"
@@ -76,7 +77,7 @@ struct Number {
   std::optional<bool> within =
       {};                  ///< whether ours itself lies within what is allowed, however well it is known
   std::string words = {};  ///< the verdict in full
-  std::string noise = {};  ///< why the run is noisy; empty where it is sound
+  runs::Doubt doubt = {};  ///< of the run's own verdict
   std::string walls_differ = {};     ///< what walls the run does not have as the scene has them, in words
   compare::words::Grain grain = {};  ///< the least that is told of its scene's lengths and times
   std::optional<double> difference() const;
@@ -115,7 +116,8 @@ struct Found {
   Wanted wanted = {};
   Outcome outcome = {};
   std::string label = {};                     ///< with its cells
-  std::string trouble = {}, noise = {};       ///< as comparisons have them
+  std::string trouble = {};                   ///< as comparisons have it
+  runs::Doubt doubt = {};                     ///< of the run's own verdict
   std::string walls_differ = {};              ///< in words
   std::string version = {};                   ///< of flowrest, that made it
   std::optional<double> rest = {}, end = {};  ///< s

@@ -28,6 +28,7 @@ Json finding_json(const Finding& f) {
                      {"error", g.measured ? Json(g.measured->error) : Json()},
                      {"value", g.measured ? Json(g.measured->value) : Json()},
                      {"trouble", g.measured ? "" : g.trouble},
+                     {"doubt", g.doubt.word()},
                      {"wall_s", g.cpu}});
   Json orders = Json::array();
   for (const auto& order : f.orders) orders.push_back(optional_json(order));

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -40,6 +41,13 @@ std::vector<Task> tasks_of(const std::vector<Finding>& findings) {
   return tasks;
 }
 
+/// What a computation's run says of itself; nothing where it made none.
+runs::Doubt doubt_of_run(const fs::path& directory) {
+  std::ifstream file(directory / "run.json");
+  const auto info = nlohmann::json::parse(file, nullptr, false);
+  return info.is_object() ? runs::doubt_of(info.value("verdict", "")) : runs::Doubt{};
+}
+
 void compute(const Case& c, Finding::OnGrid& grid, const Workplace& place) {
   const auto begin = std::chrono::steady_clock::now();
   try {
@@ -49,6 +57,7 @@ void compute(const Case& c, Finding::OnGrid& grid, const Workplace& place) {
       grid.measured = measured;
     else
       grid.trouble = "the result is not finite";
+    grid.doubt = doubt_of_run(place.folder / "run");
   } catch (const std::exception& error) {
     grid.trouble = error.what();
   }
@@ -101,6 +110,7 @@ void judge(Finding& f) {
     return;
   }
   const double error = errors.back().value;
+  const runs::Doubt& doubt = f.grids.back().doubt;
   const bool ordered = !f.orders.empty() && f.orders.back();
   const double order = ordered ? f.orders.back().value_or(0.0) : 0.0;
   const bool small = !f.of.largest_error || error <= *f.of.largest_error;
@@ -110,6 +120,7 @@ void judge(Finding& f) {
   f.verdict = fmt::format("{}: {}", f.passed ? "holds" : "fails", bound_words(f.of));
   if (!small) f.verdict += fmt::format("; the error is {:.3g}", error);
   if (!steep) f.verdict += ordered ? fmt::format("; the order is {:.2f}", order) : "; there is no order";
+  if (doubt.any()) f.verdict += fmt::format("; its finest grid is {}: {}", doubt.word(), doubt.why);
 }
 
 std::vector<Finding> verify(const std::vector<Case>& cases, const fs::path& folder, const Options& options) {

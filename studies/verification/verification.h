@@ -9,6 +9,7 @@
 
 #include "compare/measures/grid_convergence.h"
 #include "compare/report/page.h"
+#include "runs/verdict.h"
 
 /// Every exactly known case, on three grids or more, in each scheme, model, precision and solver for which it
 /// makes sense: errors, observed orders, grid convergence, and verdicts against stated bounds.
@@ -53,6 +54,7 @@ struct Finding {
     std::optional<Measured> measured;
     std::string trouble;  ///< why there is none
     double cpu = 0.0;     ///< s of wall time of this computation
+    runs::Doubt doubt{};  ///< of the run's own verdict, where a run was made
   };
   std::vector<OnGrid> grids;
   std::vector<std::optional<double>> orders;            ///< of the errors, between neighbouring grids

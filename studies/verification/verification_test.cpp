@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "runs/verdict.h"
+
 using namespace flowrest::studies::verification;
 using testing::HasSubstr;
 
@@ -40,6 +42,14 @@ TEST(Judge, HoldsOrdersAndErrorsToTheirBounds) {
   EXPECT_FALSE(large.passed);
   EXPECT_THAT(large.verdict, HasSubstr("the error is 0.02"));
   EXPECT_FALSE(made_up(1.0, 2.0, {}, {}).judged);
+}
+
+TEST(Judge, SaysWhereTheFinestGridIsInDoubtByItsOwnVerdict) {
+  Finding f = made_up(1.0, 2.0, 0.011, 1.8);
+  f.grids.back().doubt = flowrest::runs::doubt_of("under-resolved: 3.3 cells over the sheared layer");
+  judge(f);
+  EXPECT_TRUE(f.passed);
+  EXPECT_THAT(f.verdict, HasSubstr("its finest grid is under-resolved: 3.3 cells over the sheared layer"));
 }
 
 TEST(Judge, ACaseWithoutAResultFailsWithItsReason) {

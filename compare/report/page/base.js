@@ -22,10 +22,10 @@ let palette = palettes.light;
 const isDark = () => theme === 'dark' || (theme === 'auto' && darkQuery.matches);
 const inkOf = entry => !entry || entry.colour < 0 ? palette.ink : palette.lines[entry.colour % palette.lines.length];
 const dashOf = entry => entry ? dashes[entry.dash % dashes.length] : [];
-const warningOf = entry => [entry.noise && 'noisy', entry.trouble && 'incomplete'].filter(Boolean).join(', ');
+const warningOf = entry => [entry.doubt, entry.trouble && 'incomplete'].filter(Boolean).join(', ');
 const nameOf = entry => entry.name + (warningOf(entry) ? ` (${warningOf(entry)})` : '');
 const badgesOf = entry => [
-  ...(entry.noise ? [element('span', {class: 'badge', title: entry.noise}, 'noisy')] : []),
+  ...(entry.doubt ? [element('span', {class: 'badge', title: entry.why}, entry.doubt)] : []),
   ...(entry.trouble ? [element('span', {class: 'badge', title: entry.trouble}, 'incomplete')] : []),
 ];
 const swatch = (entry, marks = false, line = true) => {
