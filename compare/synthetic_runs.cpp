@@ -79,9 +79,10 @@ void write(const Duct& duct, const std::filesystem::path& directory) {
   const auto scene = scenes::load_scene("poiseuille-step-down", overrides);
   const auto& material = scene.material;
   const double height = scene.duct().height;
-  const exact::DuctFlow flow{{material.density, material.yield_stress, material.plastic_viscosity},
-                             height,
-                             scene.forces.body_force.front().second};
+  const exact::DuctFlow flow{
+      {material.density, material.yield_stress, material.plastic_viscosity, material.flow_index},
+      height,
+      scene.forces.body_force.front().second};
   const double step = scene.forces.body_force.back().first;
   runs::RunWriter writer(directory, scene, "mpm", runs::Replace::anything);
   writer.history_columns({"time_s", "plug_velocity_m_s", "mean_velocity_m_s"});

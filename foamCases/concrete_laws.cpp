@@ -18,21 +18,38 @@ using scenes::Scene;
 namespace {
 
 /// A law as OpenFOAM has it of its own; it takes stresses over the density.
-std::string built_in_viscosity(laws::Papanastasiou, const scenes::Material& material) {
+std::string viscosity_table(const scenes::Material& material, const std::string& law) {
   std::string table = "strainRateTable\n(\n";
-  for (const auto& point : papanastasiou_table(material))
+  for (const auto& point : regularised_table(material))
     table += fmt::format("    ({} {})\n", point.shear_rate, point.kinematic_viscosity);
   return table +
          fmt::format(
              ");\n\n"
-             "// Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / rho with eta = {} Pa s, tau0 "
-             "= {} Pa, m = {} s,\n"
+             "// {},\n"
              "// given as a table of (rate in 1/s, viscosity in m2/s) that linear interpolation keeps "
              "to 0.1 %.\n"
              "concreteViscosity\n{{\n    transportModel  strainRateFunction;\n"
              "    strainRateFunctionCoeffs\n    {{\n        function    table "
              "$strainRateTable;\n    }}\n}}\n",
-             material.plastic_viscosity, material.yield_stress, material.regularisation_time.value());
+             law);
+}
+
+std::string built_in_viscosity(laws::Papanastasiou, const scenes::Material& material) {
+  return viscosity_table(
+      material,
+      fmt::format("Papanastasiou: (eta + tau0 (1 - exp(-m rate)) / rate) / rho with eta = {} Pa s, tau0 = {} "
+                  "Pa, m = {} s",
+                  material.plastic_viscosity, material.yield_stress, material.regularisation_time.value()));
+}
+
+std::string built_in_viscosity(laws::HerschelBulkley, const scenes::Material& material) {
+  return viscosity_table(
+      material,
+      fmt::format(
+          "Herschel-Bulkley: (K (rate^2 + 1 / m^2)^((n - 1) / 2) + tau0 (1 - exp(-m rate)) / rate) / rho "
+          "with K = {} Pa s^n, n = {}, tau0 = {} Pa, m = {} s",
+          material.plastic_viscosity, material.flow_index, material.yield_stress,
+          material.regularisation_time.value()));
 }
 
 std::string built_in_viscosity(laws::BiViscous, const scenes::Material& material) {
@@ -61,6 +78,7 @@ std::string built_in_viscosity(laws::ElastoViscoplastic, const scenes::Material&
 /// What flowrest's plug-in calls a law.
 const char* plug_in_type(laws::Papanastasiou) { return "PapanastasiouBingham"; }
 const char* plug_in_type(laws::BiViscous) { return "biViscousBingham"; }
+const char* plug_in_type(laws::HerschelBulkley) { return "PapanastasiouHerschelBulkley"; }
 const char* plug_in_type(laws::Newtonian) { return "NewtonianConcrete"; }
 const char* plug_in_type(laws::ElastoViscoplastic) { return "elastoViscoplasticBingham"; }
 
@@ -82,9 +100,10 @@ std::string mixing_name(FoamMixing mixing) {
 /// What every law of the plug-in is told.
 std::string common_coefficients(const Scene& scene, const std::string& indent) {
   const auto& material = scene.material;
-  std::string text = fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s\n",
-                                 indent, laws::has_yield_stress(material.model) ? material.yield_stress : 0.0,
-                                 material.plastic_viscosity);
+  std::string text =
+      fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s{3}\n", indent,
+                  laws::has_yield_stress(material.model) ? material.yield_stress : 0.0,
+                  material.plastic_viscosity, material.flow_index == 1.0 ? "" : "^n");
   if (carries_flocculation(scene))
     text += fmt::format(
         "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
@@ -104,10 +123,11 @@ std::string plug_in_viscosity(const Scene& scene) {
   for (const laws::Parameter parameter : laws::every_parameter) {
     const bool common =
         parameter == laws::Parameter::yield_stress || parameter == laws::Parameter::plastic_viscosity;
-    if (!common && laws::needs(material.model, parameter))
-      own += fmt::format("    {:<22}{};  // {}\n", dictionary_word(parameter),
-                         material.flow_curve().parameters.*laws::member_of<double>(parameter),
-                         laws::unit_of(parameter));
+    if (common || !laws::needs(material.model, parameter)) continue;
+    const std::string unit = laws::unit_of(parameter);
+    own += fmt::format("    {:<22}{};{}\n", dictionary_word(parameter),
+                       material.flow_curve().parameters.*laws::member_of<double>(parameter),
+                       unit.empty() ? "" : "  // " + unit);
   }
   return fmt::format("concreteViscosity\n{{\n    transportModel      {};\n{}{}}}\n",
                      laws::visit(material.model, [](auto law) { return plug_in_type(law); }),

@@ -112,6 +112,22 @@ TEST_F(OneCell, RegularisedLawsHaveTheirViscosity) {
   }
 }
 
+TEST_F(OneCell, AHerschelBulkleyFluidHasItsViscosity) {
+  for (const double n : {0.5, 1.3})
+    for (const double rate : {1e-3, 0.3, 5.0}) {
+      shear(scene("herschel-bulkley", 0.1,
+                  {"material.regularisation_time=10", fmt::format("material.flow_index={}", n),
+                   "runs.mpm=herschel-bulkley", "runs.foam=herschel-bulkley", "foam.max_time_step=0.05"}),
+            rate);
+      EXPECT_NEAR(
+          field("nu1", 1)[0] * density,
+          viscosity * std::pow(std::hypot(rate, 0.1), n - 1.0) - yield * std::expm1(-10.0 * rate) / rate,
+          1e-6)
+          << n << " at " << rate;
+      fs::remove_all(case_);
+    }
+}
+
 /// Sheared at a constant rate lambda falls as exp(-alpha rate t) to A_thix / (tau0 alpha rate).
 TEST_F(OneCell, FlocculationDecaysInFlowAndGrowsAtRest) {
   const double rate = 2.0, end = 1.0;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
@@ -103,7 +104,7 @@ TEST_F(OpenFoam, AQuarterSlumpsAsTheWedgeDoes) {
 }
 
 TEST_F(OpenFoam, RunsEveryLawItAcceptsOnBothWalls) {
-  std::vector<const char*> models{"papanastasiou", "bi-viscous", "newtonian"};
+  std::vector<const char*> models{"papanastasiou", "bi-viscous", "herschel-bulkley", "newtonian"};
   if (find_plug_in()) models.push_back("elasto-viscoplastic");
   for (const char* model : models) {
     run(roussel_slump(model, {"foam.cell=0.03", "time.end=0.1", "walls.base=slip"}));
@@ -119,6 +120,23 @@ TEST_F(OpenFoam, PapanastasiouAndBiViscousAgreeWhileTheConcreteFlows) {
   EXPECT_NEAR(first, second, 1.0);
   const double newtonian = run(roussel_slump("newtonian", set)).history.at("spread_mm").back();
   EXPECT_GT(newtonian, first + 3.0);
+}
+
+/// Sheared by more than 1 1/s everywhere that matters, concrete resists the more the larger the power.
+TEST_F(OpenFoam, AHerschelBulkleySlumpSpreadsTheLessTheLargerItsPower) {
+  double before = std::numeric_limits<double>::infinity();
+  for (const char* n : {"0.5", "1", "1.3"}) {
+    const double spread =
+        run(roussel_slump("herschel-bulkley",
+                          {std::string("material.flow_index=") + n, "foam.cell=0.02", "time.end=0.3",
+                           "runs.mpm=herschel-bulkley", "runs.foam=herschel-bulkley"}))
+            .history.at("spread_mm")
+            .back();
+    EXPECT_EQ(outcome_.status, runs::Status::end_time) << n;
+    EXPECT_LT(spread, before - 2.0) << n;
+    before = spread;
+  }
+  EXPECT_GT(before, 200.0);
 }
 
 TEST_F(OpenFoam, AnInterruptLeavesAReadableRunAndAFullState) {

@@ -11,25 +11,29 @@ namespace {
 constexpr double rate_ratio = 1.05;
 /// Past this share of the viscosity the yield stress may be held as it is in the last row.
 constexpr double negligible = 2e-4;
-/// No concrete is sheared faster (1/s); it ends the table of a material that has no plastic viscosity.
+/// No concrete is sheared faster (1/s); it ends the table of a material that has no plastic viscosity, or one
+/// that goes on changing with the rate.
 constexpr double largest_rate = 1e6;
 
 }  // namespace
 
-double papanastasiou_viscosity(const scenes::Material& material, double shear_rate) {
-  return laws::Papanastasiou::viscosity(material.flow_curve().parameters, shear_rate) / material.density;
+double regularised_viscosity(const scenes::Material& material, double shear_rate) {
+  return laws::HerschelBulkley::viscosity(material.flow_curve().parameters, shear_rate) / material.density;
 }
 
-std::vector<TablePoint> papanastasiou_table(const scenes::Material& material) {
+std::vector<TablePoint> regularised_table(const scenes::Material& material) {
   const double m = material.regularisation_time.value();
   const double first = 0.01 / m;  // below it the law falls linearly with the rate
-  const double flowing = material.yield_stress / std::max(negligible * material.plastic_viscosity, 1e-300);
+  const double flowing =
+      material.flow_index == 1.0
+          ? material.yield_stress / std::max(negligible * material.plastic_viscosity, 1e-300)
+          : largest_rate;
   const double last = std::clamp(flowing, 10.0 * first, std::max(largest_rate, 10.0 * first));
-  std::vector<TablePoint> table{{0.0, papanastasiou_viscosity(material, 0.0)}};
+  std::vector<TablePoint> table{{0.0, regularised_viscosity(material, 0.0)}};
   const int rows = static_cast<int>(std::ceil(std::log(last / first) / std::log(rate_ratio)));
   for (int row = 0; row <= rows; ++row) {
     const double rate = first * std::pow(rate_ratio, row);
-    table.push_back({rate, papanastasiou_viscosity(material, rate)});
+    table.push_back({rate, regularised_viscosity(material, rate)});
   }
   return table;
 }

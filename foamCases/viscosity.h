@@ -13,13 +13,13 @@ struct TablePoint {
   double kinematic_viscosity = 0.0;  ///< m2/s
 };
 
-/// Papanastasiou's apparent viscosity over density, (eta + tau0 (1 - exp(-m rate)) / rate) / rho, m2/s; its
-/// limit eta + tau0 m at rest.
-double papanastasiou_viscosity(const scenes::Material&, double shear_rate);
+/// Apparent viscosity over density of Herschel and Bulkley's law (laws/herschel_bulkley.h), m2/s. With a flow
+/// index of 1 it is Papanastasiou's, (eta + tau0 (1 - exp(-m rate)) / rate) / rho, and eta + tau0 m at rest.
+double regularised_viscosity(const scenes::Material&, double shear_rate);
 
 /// The law as a table that linear interpolation between its rows, and its last row beyond them, reproduces to
 /// 0.1 %.
-std::vector<TablePoint> papanastasiou_table(const scenes::Material&);
+std::vector<TablePoint> regularised_table(const scenes::Material&);
 
 /// The kinematic viscosity of a fluid at rest, m2/s. Of the bi-viscous law it is (eta + tau0 /
 /// critical_shear_rate) / rho: with it HerschelBulkley's min(nu0, tau0 / rate + k) changes branch at that

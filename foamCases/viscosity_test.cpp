@@ -32,7 +32,7 @@ class PapanastasiouTable : public ::testing::TestWithParam<scenes::Material> {};
 
 TEST_P(PapanastasiouTable, FollowsTheLawToOneInAThousand) {
   const auto& concrete = GetParam();
-  const auto table = papanastasiou_table(concrete);
+  const auto table = regularised_table(concrete);
   ASSERT_EQ(table.front().shear_rate, 0.0);
   // From far below the first row to ten times past the last one that matters.
   for (double rate = 1e-9; rate < 1e5; rate *= 1.0137) {
@@ -42,7 +42,7 @@ TEST_P(PapanastasiouTable, FollowsTheLawToOneInAThousand) {
         concrete.density;
     // 1 - exp loses digits at small rates; the law's own limit is taken there.
     const double law =
-        rate * *concrete.regularisation_time > 1e-6 ? exact : papanastasiou_viscosity(concrete, 0.0);
+        rate * *concrete.regularisation_time > 1e-6 ? exact : regularised_viscosity(concrete, 0.0);
     ASSERT_NEAR(interpolated(table, rate) / law, 1.0, 1e-3) << "at " << rate << " 1/s";
   }
 }
@@ -53,10 +53,24 @@ INSTANTIATE_TEST_SUITE_P(Materials, PapanastasiouTable,
                                            material(1, 500, 100), material(10, 0.5, 10)));
 
 TEST(PapanastasiouTable, AscendsEvenWithoutPlasticViscosity) {
-  const auto table = papanastasiou_table(material(50, 0, 100));
+  const auto table = regularised_table(material(50, 0, 100));
   for (std::size_t i = 1; i < table.size(); ++i) {
     ASSERT_GT(table[i].shear_rate, table[i - 1].shear_rate);
     ASSERT_LT(table[i].kinematic_viscosity, table[i - 1].kinematic_viscosity);
+  }
+}
+
+TEST(HerschelBulkleyTable, FollowsThePowerToOneInAThousand) {
+  for (const double n : {0.3, 0.7, 1.3, 1.5}) {
+    auto concrete = material(50, 30, 100);
+    concrete.flow_index = n;
+    const auto table = regularised_table(concrete);
+    for (double rate = 1e-9; rate < 1e5; rate *= 1.0137) {
+      const double yield_part = -std::expm1(-100.0 * rate) / rate * 50.0;
+      const double power = 30.0 * std::pow(std::hypot(rate, 0.01), n - 1.0);
+      ASSERT_NEAR(interpolated(table, rate) * concrete.density / (yield_part + power), 1.0, 1e-3)
+          << "n = " << n << " at " << rate << " 1/s";
+    }
   }
 }
 

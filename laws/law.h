@@ -6,6 +6,7 @@
 
 #include "laws/bi_viscous.h"
 #include "laws/elasto_viscoplastic.h"
+#include "laws/herschel_bulkley.h"
 #include "laws/newtonian.h"
 #include "laws/papanastasiou.h"
 #include "laws/thixotropy.h"
@@ -15,8 +16,9 @@
 namespace flowrest::laws {
 
 /// In the order in which reports have them.
-enum class Law { elasto_viscoplastic, papanastasiou, bi_viscous, newtonian };
-constexpr Law every_law[] = {Law::elasto_viscoplastic, Law::papanastasiou, Law::bi_viscous, Law::newtonian};
+enum class Law { elasto_viscoplastic, papanastasiou, bi_viscous, herschel_bulkley, newtonian };
+constexpr Law every_law[] = {Law::elasto_viscoplastic, Law::papanastasiou, Law::bi_viscous,
+                             Law::herschel_bulkley, Law::newtonian};
 
 /// Calls `use` with the law itself, an object without contents.
 template <class Use>
@@ -28,6 +30,8 @@ constexpr auto visit(Law law, Use&& use) {
       return use(Papanastasiou{});
     case Law::bi_viscous:
       return use(BiViscous{});
+    case Law::herschel_bulkley:
+      return use(HerschelBulkley{});
     case Law::newtonian:
       break;
   }

@@ -31,7 +31,8 @@ TEST(Laws, AreKnownByTheirNamesInTheOrderOfReports) {
 TEST(Laws, OnlyTheSolidRestsAndOnlyRegularisedFluidsCreep) {
   for (const Law law : every_law) {
     EXPECT_EQ(can_rest(law), law == Law::elasto_viscoplastic);
-    EXPECT_EQ(creeps(law), law == Law::papanastasiou || law == Law::bi_viscous);
+    EXPECT_EQ(creeps(law),
+              law == Law::papanastasiou || law == Law::bi_viscous || law == Law::herschel_bulkley);
     EXPECT_EQ(has_yield_stress(law), law != Law::newtonian);
     EXPECT_TRUE(needs(law, Parameter::plastic_viscosity));
   }
@@ -65,7 +66,7 @@ TEST(Laws, ViscositiesHaveTheirLimits) {
   EXPECT_NEAR(papanastasiou(10.0), viscosity + yield / 10.0, 1e-12);
   EXPECT_DOUBLE_EQ(BiViscous::viscosity(concrete, 1e-6), viscosity + yield / 0.01);
   EXPECT_DOUBLE_EQ(BiViscous::viscosity(concrete, 2.0), viscosity + yield / 2.0);
-  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::newtonian}) {
+  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::herschel_bulkley, Law::newtonian}) {
     const FlowCurve curve{law, concrete};
     EXPECT_NEAR(curve.stress(1e-9) / 1e-9, curve.largest_viscosity(), 1e-3) << name_of(law);
     EXPECT_LE(curve.stress(0.5) / 0.5, curve.largest_viscosity() * (1.0 + 1e-15)) << name_of(law);
@@ -74,7 +75,7 @@ TEST(Laws, ViscositiesHaveTheirLimits) {
 
 /// What a fluid's implicit update is: the trial less the elastic relaxation is the law's stress at the rate.
 TEST(Laws, AFluidsReturnBalances) {
-  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::newtonian})
+  for (const Law law : {Law::papanastasiou, Law::bi_viscous, Law::herschel_bulkley, Law::newtonian})
     for (const double trial : {1e-6, 1.0, 49.0, 50.0, 51.0, 400.0, 1e6})
       for (const double shear : {0.1, 10.0, 1e3}) {
         const auto relaxed = visit(law, [&](auto own) {
@@ -84,6 +85,75 @@ TEST(Laws, AFluidsReturnBalances) {
             << name_of(law) << " " << trial;
         EXPECT_NEAR(relaxed.stress, trial - shear * relaxed.rate, 1e-14 * trial);
       }
+}
+
+constexpr double indices[] = {0.3, 0.5, 0.9, 1.0, 1.2, 1.5};
+Parameters<double> power_law(double index) { return {yield, viscosity, 100.0, 0.01, index}; }
+
+TEST(HerschelBulkley, IsPapanastasiousLawWhereThePowerIsOne) {
+  for (double rate = 1e-12; rate < 1e4; rate *= 3.0) {
+    EXPECT_DOUBLE_EQ(HerschelBulkley::stress(concrete, rate), Papanastasiou::stress(concrete, rate));
+    EXPECT_DOUBLE_EQ(HerschelBulkley::tangent(concrete, rate), Papanastasiou::tangent(concrete, rate));
+    EXPECT_DOUBLE_EQ(HerschelBulkley::viscosity(concrete, rate), Papanastasiou::viscosity(concrete, rate));
+  }
+  EXPECT_DOUBLE_EQ(HerschelBulkley::largest_viscosity(concrete), Papanastasiou::largest_viscosity(concrete));
+  for (const double trial : {0.0, 1e-6, 49.0, 51.0, 1e4}) {
+    const auto one = HerschelBulkley::relax(concrete, Trial<double>{trial, 40.0}, 0.3);
+    const auto other = Papanastasiou::relax(concrete, Trial<double>{trial, 40.0}, 0.3);
+    EXPECT_NEAR(one.stress, other.stress, 1e-13 * trial);
+    EXPECT_NEAR(one.rate, other.rate, 1e-13 * trial);
+  }
+}
+
+TEST(HerschelBulkley, InFlowItIsThePowerLawPastYield) {
+  for (const double n : indices)
+    for (const double rate : {1.0, 10.0, 100.0})
+      EXPECT_NEAR(HerschelBulkley::stress(power_law(n), rate) / (yield + viscosity * std::pow(rate, n)), 1.0,
+                  1e-4)
+          << n << " at " << rate;
+}
+
+/// Nothing divides by the rate, and no viscosity passes the bound that limits steps.
+TEST(HerschelBulkley, HasAFiniteViscosityAtEveryRate) {
+  for (const double n : indices) {
+    const auto p = power_law(n);
+    const double at_rest = viscosity * std::pow(100.0, 1.0 - n) + 100.0 * yield;
+    EXPECT_EQ(HerschelBulkley::stress(p, 0.0), 0.0);
+    EXPECT_NEAR(HerschelBulkley::viscosity(p, 0.0), at_rest, 1e-12 * at_rest);
+    EXPECT_NEAR(HerschelBulkley::tangent(p, 0.0), at_rest, 1e-12 * at_rest);
+    double stress_before = 0.0;
+    for (double rate = 1e-300; rate < 1e3; rate *= 1.7) {
+      const double stress = HerschelBulkley::stress(p, rate);
+      ASSERT_GT(stress, stress_before) << n << " at " << rate;
+      ASSERT_NEAR(HerschelBulkley::viscosity(p, rate) * rate, stress, 1e-13 * stress) << n << " at " << rate;
+      ASSERT_LE(HerschelBulkley::viscosity(p, rate), HerschelBulkley::largest_viscosity(p) * (1.0 + 1e-14));
+      ASSERT_GT(HerschelBulkley::tangent(p, rate), 0.0);
+      stress_before = stress;
+    }
+  }
+}
+
+TEST(HerschelBulkley, RateAndTangentBelongToTheStressForEveryPower) {
+  for (const double n : indices)
+    for (double rate = 1e-8; rate < 1e3; rate *= 3.0) {
+      const FlowCurve curve{Law::herschel_bulkley, power_law(n)};
+      EXPECT_NEAR(curve.rate(curve.stress(rate)) / rate, 1.0, 1e-10) << n << " at " << rate;
+      const Parameters<Dual> p{yield, viscosity, 100.0, 0.01, n};
+      const Dual stress = HerschelBulkley::stress(p, Dual{rate, 1.0});
+      EXPECT_NEAR(stress.d, curve.tangent(rate), 1e-12 * stress.d) << n << " at " << rate;
+    }
+}
+
+TEST(HerschelBulkley, TheReturnBalancesFromAnyStart) {
+  for (const double n : indices)
+    for (const double trial : {0.0, 1e-9, 1.0, 49.0, 50.0, 51.0, 400.0, 1e6})
+      for (const double shear : {0.1, 10.0, 1e3})
+        for (const double before : {0.0, 1e-9, 0.3, 1e4}) {
+          const auto p = power_law(n);
+          const auto relaxed = HerschelBulkley::relax(p, Trial<double>{trial, shear}, before);
+          EXPECT_NEAR(relaxed.stress, HerschelBulkley::stress(p, relaxed.rate), 1e-12 * trial)
+              << n << ", " << trial << ", " << shear << " from " << before;
+        }
 }
 
 /// Constant shear from rest: tau = G rate t up to yield, then tau0 + eta rate (1 - exp(-G (t - t_y) / eta)).
@@ -162,10 +232,11 @@ TEST(Thixotropy, StepsApproachTheClosedFormAtRestAndInSteadyShear) {
 
 /// Derivatives of a return by any of its data, against central differences.
 TEST(Laws, DerivativesGoThroughEveryReturn) {
-  using Data = std::vector<double>;  // tau0, eta, m, critical rate, growth, breakdown, trial, shear, lambda
+  // tau0, eta, m, critical rate, growth, breakdown, trial, shear, lambda, n
+  using Data = std::vector<double>;
   const auto relaxed = [](Law law, bool thixotropic, const auto& x) {
     using T = std::decay_t<decltype(x[0])>;
-    const Parameters<T> p{x[0], x[1], x[2], x[3]};
+    const Parameters<T> p{x[0], x[1], x[2], x[3], x[9]};
     const Structure<T> structure{x[4], x[5]};
     const Trial<T> trial{x[6], x[7]};
     return visit(law, [&](auto own) {
@@ -177,7 +248,8 @@ TEST(Laws, DerivativesGoThroughEveryReturn) {
   for (const Law law : every_law)
     for (const bool thixotropic : {false, true})
       for (const double trial : {30.0, 300.0}) {
-        const Data at{yield, viscosity, 20.0, 0.05, 0.1, 0.3, trial, 40.0, 0.6};
+        const double index = needs(law, Parameter::flow_index) ? 0.7 : 1.0;
+        const Data at{yield, viscosity, 20.0, 0.05, 0.1, 0.3, trial, 40.0, 0.6, index};
         for (std::size_t i = 0; i < at.size(); ++i) {
           std::vector<Dual> seeded(at.begin(), at.end());
           seeded[i].d = 1.0;

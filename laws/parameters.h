@@ -3,8 +3,8 @@
 /// What the flow laws share: their parameters, and what a step of an implicit update gives and takes.
 ///
 /// tau = sqrt(s:s / 2), s the deviatoric stress, and rate = sqrt(2 D:D) throughout. Every function is a
-/// template over the scalar: double, float, or a number that carries derivatives and brings sqrt, exp and
-/// expm1 along.
+/// template over the scalar: double, float, or a number that carries derivatives and brings sqrt, exp,
+/// expm1 and pow along.
 namespace flowrest::laws {
 
 /// Parameters of every law; what a law does not need it does not read. The yield stress is the local one:
@@ -12,15 +12,23 @@ namespace flowrest::laws {
 template <class T>
 struct Parameters {
   T yield_stress{};         ///< Pa, tau0
-  T plastic_viscosity{};    ///< Pa s, eta
+  T plastic_viscosity{};    ///< Pa s, eta; of a power law the consistency K, Pa s^n
   T regularisation_time{};  ///< s, m of Papanastasiou
   T critical_shear_rate{};  ///< 1/s, at which the bi-viscous law yields
+  T flow_index{1};          ///< n, the power of the rate
 };
 
 /// One of them, as laws say which they need.
-enum class Parameter { yield_stress, plastic_viscosity, regularisation_time, critical_shear_rate };
+enum class Parameter {
+  yield_stress,
+  plastic_viscosity,
+  regularisation_time,
+  critical_shear_rate,
+  flow_index
+};
 constexpr Parameter every_parameter[] = {Parameter::yield_stress, Parameter::plastic_viscosity,
-                                         Parameter::regularisation_time, Parameter::critical_shear_rate};
+                                         Parameter::regularisation_time, Parameter::critical_shear_rate,
+                                         Parameter::flow_index};
 
 /// Its key in a scene's [material].
 constexpr const char* key_of(Parameter parameter) {
@@ -32,11 +40,17 @@ constexpr const char* key_of(Parameter parameter) {
     case Parameter::regularisation_time:
       return "regularisation_time";
     case Parameter::critical_shear_rate:
+      return "critical_shear_rate";
+    case Parameter::flow_index:
       break;
   }
-  return "critical_shear_rate";
+  return "flow_index";
 }
 
+/// Whether a scene may leave it out, whatever the law.
+constexpr bool has_default(Parameter parameter) { return parameter == Parameter::flow_index; }
+
+/// Empty for a number without unit.
 constexpr const char* unit_of(Parameter parameter) {
   switch (parameter) {
     case Parameter::yield_stress:
@@ -46,9 +60,11 @@ constexpr const char* unit_of(Parameter parameter) {
     case Parameter::regularisation_time:
       return "s";
     case Parameter::critical_shear_rate:
+      return "1/s";
+    case Parameter::flow_index:
       break;
   }
-  return "1/s";
+  return "";
 }
 
 template <class T>
@@ -61,9 +77,11 @@ constexpr T Parameters<T>::*member_of(Parameter parameter) {
     case Parameter::regularisation_time:
       return &Parameters<T>::regularisation_time;
     case Parameter::critical_shear_rate:
+      return &Parameters<T>::critical_shear_rate;
+    case Parameter::flow_index:
       break;
   }
-  return &Parameters<T>::critical_shear_rate;
+  return &Parameters<T>::flow_index;
 }
 
 /// The elastic trial of a step, which a law returns to its own stress at the rate x that balances

@@ -35,6 +35,10 @@ inline Dual exp(const Dual& a) {
   return {e, a.d * e};
 }
 inline Dual expm1(const Dual& a) { return {std::expm1(a.v), a.d * std::exp(a.v)}; }
+inline Dual pow(const Dual& a, const Dual& b) {
+  const double power = std::pow(a.v, b.v);
+  return {power, power * (b.v / a.v * a.d + std::log(a.v) * b.d)};
+}
 inline double value(const Dual& a) { return a.v; }
 
 }  // namespace flowrest::laws::test

@@ -54,7 +54,9 @@ void check_models(const Case& c) {
   for (const Model model : models_in_use(c.scene()))
     for (const laws::Parameter parameter : laws::every_parameter) {
       const std::string path = fmt::format("material.{}", laws::key_of(parameter));
-      if (!laws::needs(model, parameter) || !c.usable({path}) || c.given.gives(path)) continue;
+      if (!laws::needs(model, parameter) || laws::has_default(parameter) || !c.usable({path}) ||
+          c.given.gives(path))
+        continue;
       if (std::find(known.begin(), known.end(), parameter) != known.end()) continue;  // once is enough
       known.push_back(parameter);
       std::string instead;
@@ -64,6 +66,23 @@ void check_models(const Case& c) {
       }
       c.fault(path, fmt::format("{} is missing; needed by the model {}{}", path, to_string(model), instead));
     }
+}
+
+/// A power of the shear rate that a model would pass over in silence is refused.
+void check_flow_index(const Case& c) {
+  const double index = c.scene().material.flow_index;
+  if (!c.usable({"material.flow_index", "material.model", "runs.mpm", "runs.foam"}) || index == 1.0) return;
+  std::vector<std::string> able;
+  for (const Model model : laws::every_law)
+    if (laws::needs(model, laws::Parameter::flow_index)) able.push_back(to_string(model));
+  for (const Model model : models_in_use(c.scene())) {
+    if (laws::needs(model, laws::Parameter::flow_index)) continue;
+    c.fault("material.flow_index",
+            fmt::format("material.flow_index is {:g}, which the model {} does not have; allowed: 1, or only "
+                        "{} as material.model and in runs",
+                        index, to_string(model), joined(able)));
+    return;
+  }
 }
 
 void check_foam_runs(const Case& c) {
@@ -102,6 +121,7 @@ bool step_is_known(const Case& c) {
                    "material.equation_of_state_exponent",
                    "material.yield_stress",
                    "material.plastic_viscosity",
+                   "material.flow_index",
                    "material.regularisation_time",
                    "material.critical_shear_rate",
                    "thixotropy.flocculation_rate",
@@ -251,6 +271,7 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
   check_dimension(c);
   std::visit([&](const auto& a) { a.check(c); }, draft.scene.geometry.apparatus);
   check_models(c);
+  check_flow_index(c);
   check_foam_runs(c);
   check_thixotropy(c);
   check_b_bar(c);

@@ -78,7 +78,7 @@ bool Material::suits(Model law) const {
 laws::FlowCurve Material::flow_curve() const {
   return {model,
           {yield_stress, plastic_viscosity, regularisation_time.value_or(0.0),
-           critical_shear_rate.value_or(1.0)}};
+           critical_shear_rate.value_or(1.0), flow_index}};
 }
 
 double Forces::body_force_at(double time) const {

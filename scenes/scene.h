@@ -27,12 +27,13 @@ struct Geometry {
 
 struct Material {
   Model model = Model::elasto_viscoplastic;
-  double density = 0.0;                     ///< kg/m3, at rest and without pressure
-  double yield_stress = 0.0;                ///< Pa, tau0
-  double plastic_viscosity = 0.0;           ///< Pa s, eta
-  double youngs_modulus = 0.0;              ///< Pa, E; resolved from bulk_modulus where that is given instead
-  double poisson_ratio = 0.0;               ///< nu
-  double equation_of_state_exponent = 7.0;  ///< gamma of Yu et al. 2026, Eq. 6
+  double density = 0.0;            ///< kg/m3, at rest and without pressure
+  double yield_stress = 0.0;       ///< Pa, tau0
+  double plastic_viscosity = 0.0;  ///< Pa s, eta; where flow_index is not 1 the consistency K, Pa s^n
+  double flow_index = 1.0;         ///< n, the power of the shear rate
+  double youngs_modulus = 0.0;     ///< Pa, E; resolved from bulk_modulus where that is given instead
+  double poisson_ratio = 0.0;      ///< nu
+  double equation_of_state_exponent = 7.0;    ///< gamma of Yu et al. 2026, Eq. 6
   std::optional<double> regularisation_time;  ///< s, m of Papanastasiou
   /// 1/s, where the bi-viscous law yields; resolved to 1/m where only the regularisation time is given.
   std::optional<double> critical_shear_rate;

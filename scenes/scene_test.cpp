@@ -451,7 +451,7 @@ TEST(Names, AreThoseOfTheScenes) {
   EXPECT_THAT([] { model_from_name("biviscous"); },
               testing::ThrowsMessage<SceneError>("unknown model \"biviscous\", nearest is \"bi-viscous\"; "
                                                  "allowed: elasto-viscoplastic, papanastasiou, "
-                                                 "bi-viscous, newtonian"));
+                                                 "bi-viscous, herschel-bulkley, newtonian"));
 }
 
 TEST(Material, ModuliFollowFromYoungsModulus) {

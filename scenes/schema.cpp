@@ -104,9 +104,15 @@ std::vector<Key> material_keys() {
       number("material.yield_stress", "Pa", from(0.0, largest_stress), AT(draft.scene.material.yield_stress),
              "yield stress tau0")
           .otherwise("needed by every model but newtonian"),
-      number("material.plastic_viscosity", "Pa s", from(0.0, largest_stress),
-             AT(draft.scene.material.plastic_viscosity), "plastic viscosity eta")
+      number(
+          "material.plastic_viscosity", "Pa s", from(0.0, largest_stress),
+          AT(draft.scene.material.plastic_viscosity),
+          "plastic viscosity eta; where flow_index is not 1 the consistency K in Pa s^n, the stress that the "
+          "flow adds to the yield stress at 1 1/s")
           .needed(),
+      number("material.flow_index", "", {0.3, 1.5}, AT(draft.scene.material.flow_index),
+             "flow index n of herschel-bulkley, the power of the shear rate: below 1 concrete thins as it is "
+             "sheared faster, above 1 it thickens; other models have 1"),
       number("material.youngs_modulus", "Pa", above(0.0, largest_stress),
              AT(draft.scene.material.youngs_modulus), "Young's modulus E")
           .otherwise("needed unless bulk_modulus is given")
@@ -122,8 +128,9 @@ std::vector<Key> material_keys() {
              AT(draft.scene.material.equation_of_state_exponent),
              "exponent gamma of the equation of state (Yu et al. 2026, Eq. 6)"),
       number("material.regularisation_time", "s", above(0.0, largest_time),
-             AT(draft.scene.material.regularisation_time), "regularisation time m of papanastasiou")
-          .otherwise("needed by papanastasiou"),
+             AT(draft.scene.material.regularisation_time),
+             "regularisation time m of papanastasiou and herschel-bulkley")
+          .otherwise("needed by papanastasiou and herschel-bulkley"),
       number("material.critical_shear_rate", "1/s", above(0.0, largest_time),
              AT(draft.scene.material.critical_shear_rate), "shear rate at which bi-viscous yields")
           .otherwise("1 / regularisation_time; needed by bi-viscous"),

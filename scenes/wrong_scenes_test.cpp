@@ -111,10 +111,10 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:36:11: mpm.threads must be an integer, not a number"},
     {"ModelsGivenAsNumber", slump_text, "mpm = [\"elasto-viscoplastic\"]", "mpm = 3",
      "wrong.toml:3:16: runs.mpm must be a string, not an integer; allowed: elasto-viscoplastic, "
-     "papanastasiou, bi-viscous, newtonian"},
+     "papanastasiou, bi-viscous, herschel-bulkley, newtonian"},
     {"ModelGivenAsNumber", slump_text, "mpm = [\"elasto-viscoplastic\"]", "mpm = [3]",
      "wrong.toml:3:17: runs.mpm must be a string, not an integer; allowed: elasto-viscoplastic, "
-     "papanastasiou, bi-viscous, newtonian"},
+     "papanastasiou, bi-viscous, herschel-bulkley, newtonian"},
     {"ExtendsGivenAsNumber", slump_text, "kind = \"slump\"", "kind = \"slump\"\nextends = 3",
      "wrong.toml:3:11: extends must be a string, not an integer"},
     {"UnknownKind", slump_text, "kind = \"slump\"", "kind = \"slmp\"",
@@ -131,7 +131,7 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:36:13: mpm.precision is \"single\"; allowed: double, float"},
     {"UnknownRun", slump_text, "foam = [\"papanastasiou\"]", "foam = [\"papanastasio\"]",
      "wrong.toml:3:49: runs.foam is \"papanastasio\", nearest is \"papanastasiou\"; allowed: "
-     "elasto-viscoplastic, papanastasiou, bi-viscous, newtonian"},
+     "elasto-viscoplastic, papanastasiou, bi-viscous, herschel-bulkley, newtonian"},
     {"RunNamedTwice", slump_text, "mpm = [\"elasto-viscoplastic\"]", "mpm = [\"newtonian\", \"newtonian\"]",
      "wrong.toml:3:30: runs.mpm names newtonian twice; allowed: each model once"},
     {"UnknownWall", slump_text, "base = \"no-slip\"", "base = \"sticky\"",
@@ -191,6 +191,13 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:11:2: material.yield_stress is missing; needed by the model elasto-viscoplastic"},
     {"NoRegularisationTime", slump_text, "regularisation_time = 100.0\n", "\n",
      "wrong.toml:11:2: material.regularisation_time is missing; needed by the model papanastasiou"},
+    {"FlowIndexWithoutAPower", slump_text, "plastic_viscosity = 50.0",
+     "plastic_viscosity = 50.0\nflow_index = 0.5",
+     "wrong.toml:16:14: material.flow_index is 0.5, which the model elasto-viscoplastic does not have; allowed: "
+     "1, or only herschel-bulkley as material.model and in runs"},
+    {"FlowIndexOfNoConcrete", slump_text, "plastic_viscosity = 50.0",
+     "plastic_viscosity = 50.0\nflow_index = 2",
+     "wrong.toml:16:14: material.flow_index is 2; allowed: at least 0.3, at most 1.5"},
     {"NoCriticalShearRate", duct_text, "poisson_ratio = 0.45", "poisson_ratio = 0.45\nmodel = \"bi-viscous\"",
      "wrong.toml:5:2: material.critical_shear_rate is missing; needed by the model bi-viscous: "
      "critical_shear_rate or regularisation_time, of which it is"},

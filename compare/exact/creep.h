@@ -8,10 +8,11 @@ namespace flowrest::compare::exact {
 /// A fluid that imitates a yield stress by a large viscosity at small shear rates.
 using RegularisedFluid = laws::FlowCurve;
 
-/// `time` is m of Papanastasiou, s; of the bi-viscous law the inverse of its critical shear rate.
+/// `time` is m of Papanastasiou and Herschel-Bulkley, s; of the bi-viscous law the inverse of its critical
+/// shear rate.
 inline RegularisedFluid regularised_fluid(laws::Law law, double yield_stress, double plastic_viscosity,
-                                          double time) {
-  return {law, {yield_stress, plastic_viscosity, time, 1.0 / time}};
+                                          double time, double flow_index = 1.0) {
+  return {law, {yield_stress, plastic_viscosity, time, 1.0 / time, flow_index}};
 }
 
 /// Depth-mean velocity of a film of `depth` whose base carries `base_stress`: (depth/base_stress^2) int tau g

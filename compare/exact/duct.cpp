@@ -22,7 +22,7 @@ double profile_error(const runs::Profile& profile, double height,
 double duct_stopping_time(const DuctFlow& before, double driving, double slow) {
   constexpr int cells = 250;
   constexpr double modulus = 7e5, longest = 20.0;
-  const auto [density, yield, viscosity] = before.material;
+  const auto [density, yield, viscosity, index] = before.material;
   const double half = 0.5 * before.height, dy = half / cells, dt = 0.5 * dy / std::sqrt(modulus / density);
   std::vector<double> velocity, stress;  // from the wall
   for (int i = 0; i < cells; ++i) velocity.push_back(before.velocity(half - (i + 0.5) * dy));

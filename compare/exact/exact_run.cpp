@@ -37,7 +37,7 @@ Bingham material_of(const Scene& scene, std::optional<double> flocculation = std
   if (flocculation && !(*flocculation >= 0.0 && std::isfinite(*flocculation)))
     refuse(scene, fmt::format("--flocculation {:g}; allowed: from 0", *flocculation));
   return {scene.material.density, scene.material.yield_stress * (1.0 + flocculation.value_or(0.0)),
-          scene.material.plastic_viscosity};
+          scene.material.plastic_viscosity, scene.material.flow_index};
 }
 
 /// Opens the folder of a solution. What it takes besides the scene stands in its run.json.
@@ -147,9 +147,11 @@ std::vector<ExactRun> write_duct(const Scene& scene, const std::filesystem::path
   if (scene.forces.body_force.empty()) refuse(scene, "no body force drives the duct");
 
   runs::RunWriter writer = open_run(directory / "steady", scene, flocculation, replace);
-  writer.info()["model"] = "bingham";
+  const bool power = material.flow_index != 1.0;
+  writer.info()["model"] = power ? "herschel-bulkley, not regularised" : "bingham";
   writer.info()["label"] = "exact, steady";
-  writer.info()["source"] = "Yu et al. 2026, Eqs. 48-50";
+  writer.info()["source"] = power ? "Herschel and Bulkley's law over the linear stress between the plates"
+                                  : "Yu et al. 2026, Eqs. 48-50";
   std::vector<double> coordinate, velocity;
   constexpr int points = 401;
   for (int i = 0; i < points; ++i)
@@ -234,7 +236,8 @@ void check_film(const Scene& scene) {
   if (scene.kind() != scenes::Kind::slump || scene.geometry.dimension == scenes::Dimension::plane)
     refuse(scene, "a thin film spreads from a slump about its axis");
   if (scene.thixotropy || scene.base.law != scenes::Wall::no_slip || !(scene.forces.gravity > 0.0) ||
-      !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0))
+      !(scene.material.yield_stress > 0.0) || !(scene.material.plastic_viscosity > 0.0) ||
+      scene.material.flow_index != 1.0)
     refuse(scene,
            "the film is of Bingham material without thixotropy, under gravity, on a base without slip");
 }

@@ -74,27 +74,39 @@ double DuctFlow::plug_half_width() const {
 
 double DuctFlow::velocity(double y) const {
   const double outer = std::clamp(std::abs(y), plug_half_width(), 0.5 * height);
-  // Yu et al. 2026, Eqs. 49 and 50.
-  return (force * (0.25 * height * height - outer * outer) -
-          2.0 * material.yield_stress * (0.5 * height - outer)) /
-         (2.0 * material.plastic_viscosity);
+  const auto& [density, yield, consistency, index] = material;
+  const auto stress_past_yield = [&](double from_middle) {
+    return std::max(force * from_middle - yield, 0.0);
+  };
+  // (1/F) times the integral of the rate ((tau - tau0) / K)^(1/n) over the stress from here to the wall.
+  const auto integral = [&](double stress) {
+    return stress * std::pow(stress / consistency, 1.0 / index) * index / (index + 1.0);
+  };
+  return force > 0.0
+             ? (integral(stress_past_yield(0.5 * height)) - integral(stress_past_yield(outer))) / force
+             : 0.0;
 }
 
 double DuctFlow::plug_velocity() const { return velocity(0.0); }
 
-// Outside the plug the velocity is plug_velocity (1 - s^2), s from 0 at the plug to 1 at the wall.
+// Outside the plug the velocity is plug_velocity (1 - s^(1 + 1/n)), s from 0 at the plug to 1 at the wall.
 double DuctFlow::mean_velocity() const {
   const double plug = 2.0 * plug_half_width() / height;
-  return plug_velocity() * (plug + (1.0 - plug) * 2.0 / 3.0);
+  const double n = material.flow_index;
+  return plug_velocity() * (plug + (1.0 - plug) * (n + 1.0) / (2.0 * n + 1.0));
 }
 
 double DuctFlow::l2_norm() const {
   const double plug = 2.0 * plug_half_width();
-  return plug_velocity() * std::sqrt(plug + (height - plug) * 8.0 / 15.0);
+  const double power = 1.0 + 1.0 / material.flow_index;
+  const double share = 1.0 - 2.0 / (power + 1.0) + 1.0 / (2.0 * power + 1.0);
+  return plug_velocity() * std::sqrt(plug + (height - plug) * share);
 }
 
 double stopping_time_bound(const Bingham& material, double height, double force, double l2_norm) {
-  const double a = pi * pi * material.plastic_viscosity / (material.density * height * height);
+  const double a = material.flow_index == 1.0
+                       ? pi * pi * material.plastic_viscosity / (material.density * height * height)
+                       : 0.0;
   const double b =
       2.0 * (material.yield_stress - 0.5 * std::abs(force) * height) / (material.density * std::sqrt(height));
   if (!(b > 0.0)) return std::numeric_limits<double>::infinity();

@@ -5,11 +5,13 @@
 /// Exact and asymptotic solutions as plain functions of SI quantities.
 namespace flowrest::compare::exact {
 
-/// What a Bingham material is to these solutions.
+/// What a Bingham material is to these solutions, or with a flow index n that of Herschel and Bulkley, tau =
+/// tau0 + K rate^n.
 struct Bingham {
   double density = 0.0;            ///< kg/m3
   double yield_stress = 0.0;       ///< Pa
-  double plastic_viscosity = 0.0;  ///< Pa s
+  double plastic_viscosity = 0.0;  ///< Pa s; K in Pa s^n
+  double flow_index = 1.0;         ///< n, of which an arrested shape knows nothing
 };
 
 /// The arrested, slender slump whose base carries the yield stress everywhere: h = a + sqrt(a^2 + 2 tau0 (R -
@@ -51,7 +53,7 @@ struct ArrestedPlaneSlump {
 ArrestedPlaneSlump plane_slump(const Bingham&, double gravity, double half_area);
 
 /// Steady flow between plates `height` apart under a body force (N/m3); y from the mid-plane. Yu et al. 2026,
-/// Eqs. 48-50.
+/// Eqs. 48-50, and with a flow index u = n / (n + 1) (F / K)^(1/n) ((H/2 - y0)^(1 + 1/n) - (y - y0)^(1 + 1/n)).
 struct DuctFlow {
   Bingham material;
   double height = 0.0;
@@ -66,7 +68,8 @@ struct DuctFlow {
 
 /// Upper bound on the time a duct flow of L2 norm `l2_norm` needs to stop under a force below yield:
 /// integrating d|u|/dt <= -a |u| - b, a = pi^2 eta/(rho H^2), b = 2 (tau0 - F H/2)/(rho sqrt(H)), which the
-/// energy balance gives with Poincare's inequality and max|u| <= (1/2) int|u'|. Infinite where the force does
+/// energy balance gives with Poincare's inequality and max|u| <= (1/2) int|u'|; with a flow index other than 1
+/// the yield stress alone is counted, a = 0. Infinite where the force does
 /// not stop it. s
 double stopping_time_bound(const Bingham&, double height, double force, double l2_norm);
 

@@ -106,6 +106,36 @@ TEST(DuctFlow, PlugAndMeanVelocities) {
   }
 }
 
+/// The flow curve integrated from the wall, by the midpoint rule.
+TEST(DuctFlow, WithAFlowIndexIsTheIntegralOfItsLaw) {
+  for (const double n : {0.3, 0.5, 1.0, 1.3, 1.5}) {
+    const DuctFlow flow{{2000.0, 100.0, 30.0, n}, 0.5, 2000.0};
+    constexpr int layers = 200000;
+    const double dy = 0.25 / layers;
+    double velocity = 0.0, sum = 0.0, squares = 0.0;
+    for (int i = 0; i < layers; ++i) {
+      const double y = 0.25 - (i + 0.5) * dy;
+      const double step = std::pow(std::max(2000.0 * y - 100.0, 0.0) / 30.0, 1.0 / n) * dy;
+      velocity += 0.5 * step;
+      sum += velocity / layers;
+      squares += 2.0 * velocity * velocity * dy;
+      velocity += 0.5 * step;
+    }
+    EXPECT_NEAR(flow.plug_velocity() / velocity, 1.0, 1e-8) << n;
+    EXPECT_NEAR(flow.mean_velocity() / sum, 1.0, 1e-8) << n;
+    EXPECT_NEAR(flow.l2_norm() / std::sqrt(squares), 1.0, 1e-8) << n;
+  }
+}
+
+TEST(Creep, OfAHerschelBulkleyFluidIsThatOfItsLaw) {
+  // Without a yield stress and far past the regularisation it is the power law's duct.
+  for (const double n : {0.5, 1.3}) {
+    const auto fluid = regularised_fluid(Law::herschel_bulkley, 0.0, 30.0, 1e6, n);
+    const DuctFlow flow{{2000.0, 0.0, 30.0, n}, 0.5, 360.0};
+    EXPECT_NEAR(duct_creep(fluid, 0.5, 360.0) / flow.plug_velocity(), 1.0, 1e-5) << n;
+  }
+}
+
 TEST(DuctFlow, IsAtRestBelowYield) {
   const DuctFlow flow{{2000.0, 100.0, 30.0}, 0.5, 360.0};  // yields from 400 N/m3
   EXPECT_EQ(flow.plug_velocity(), 0.0);

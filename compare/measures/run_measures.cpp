@@ -68,7 +68,8 @@ std::optional<SlumpFacts> slump_facts(const RunView& view) {
       !(*yield_stress > 0.0) || !(*gravity > 0.0))
     return std::nullopt;
   if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
-  return SlumpFacts{{*density, *yield_stress, *viscosity},
+  const double index = setting(view, "/material/flow_index").value_or(1.0);
+  return SlumpFacts{{*density, *yield_stress, *viscosity, index},
                     *gravity,
                     scenes::Slump{*height, *top, *bottom, domain.value_or(0.0), 0.0, {}}};
 }
@@ -263,6 +264,7 @@ void measure_approach(Comparison& comparison) {
     if (view.exact || !moves) continue;
     const auto facts = slump_facts(view);
     const bool film = facts && facts->cone.domain_radius > 0.0 && facts->material.plastic_viscosity > 0.0 &&
+                      facts->material.flow_index == 1.0 &&
                       word(view.run.info, "/settings/walls/base") == "no-slip" &&
                       !view.run.info.contains(Json::json_pointer("/settings/thixotropy"));
     if (!film || !m.end || *m.end < earliest) continue;

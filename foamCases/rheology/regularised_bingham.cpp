@@ -2,6 +2,7 @@
 
 #include "addToRunTimeSelectionTable.H"
 #include "laws/bi_viscous.h"
+#include "laws/herschel_bulkley.h"
 #include "laws/papanastasiou.h"
 
 namespace Foam {
@@ -11,6 +12,8 @@ defineTypeNameAndDebug(PapanastasiouBingham, 0);
 addToRunTimeSelectionTable(viscosityModel, PapanastasiouBingham, dictionary);
 defineTypeNameAndDebug(biViscousBingham, 0);
 addToRunTimeSelectionTable(viscosityModel, biViscousBingham, dictionary);
+defineTypeNameAndDebug(PapanastasiouHerschelBulkley, 0);
+addToRunTimeSelectionTable(viscosityModel, PapanastasiouHerschelBulkley, dictionary);
 defineTypeNameAndDebug(NewtonianConcrete, 0);
 addToRunTimeSelectionTable(viscosityModel, NewtonianConcrete, dictionary);
 
@@ -84,6 +87,21 @@ biViscousBingham::biViscousBingham(const word& name, const dictionary& propertie
 scalar biViscousBingham::viscosity(scalar plastic_viscosity, scalar yield_stress, scalar rate) const {
   return flowrest::laws::BiViscous::viscosity<scalar>(
       {yield_stress, plastic_viscosity, 0.0, critical_shear_rate_}, rate);
+}
+
+PapanastasiouHerschelBulkley::PapanastasiouHerschelBulkley(const word& name, const dictionary& properties,
+                                                           const volVectorField& velocity,
+                                                           const surfaceScalarField& flux)
+    : RegularisedBingham(name, properties, properties.optionalSubDict(word(typeName) + "Coeffs"), velocity,
+                         flux),
+      regularisation_time_(
+          positive(properties.optionalSubDict(word(typeName) + "Coeffs"), "regularisationTime")),
+      flow_index_(positive(properties.optionalSubDict(word(typeName) + "Coeffs"), "flowIndex")) {}
+
+scalar PapanastasiouHerschelBulkley::viscosity(scalar plastic_viscosity, scalar yield_stress,
+                                               scalar rate) const {
+  return flowrest::laws::HerschelBulkley::viscosity<scalar>(
+      {yield_stress, plastic_viscosity, regularisation_time_, 0.0, flow_index_}, rate);
 }
 
 NewtonianConcrete::NewtonianConcrete(const word& name, const dictionary& properties,

@@ -5,8 +5,8 @@
 #include "foamCases/rheology/flocculation.h"
 #include "viscosityModel.H"
 
-/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid, and
-/// as a Newtonian one.
+/// Viscosity models for `transportModel` in transportProperties: concrete as a regularised Bingham fluid, as
+/// that of Herschel and Bulkley, and as a Newtonian one.
 namespace Foam {
 namespace viscosityModels {
 
@@ -64,6 +64,22 @@ class biViscousBingham : public RegularisedBingham {
 
  private:
   scalar critical_shear_rate_;
+};
+
+/// Herschel and Bulkley's law with Papanastasiou's regularisation (laws/herschel_bulkley.h), the consistency
+/// (Pa s^n) as `plasticViscosity`; keywords `regularisationTime` (s) and `flowIndex`.
+class PapanastasiouHerschelBulkley : public RegularisedBingham {
+ public:
+  TypeName("PapanastasiouHerschelBulkley");
+  PapanastasiouHerschelBulkley(const word& name, const dictionary& properties, const volVectorField& velocity,
+                               const surfaceScalarField& flux);
+
+ protected:
+  scalar viscosity(scalar plastic_viscosity, scalar yield_stress, scalar rate) const override;
+
+ private:
+  scalar regularisation_time_;
+  scalar flow_index_;
 };
 
 /// One viscosity, mixed with the air's and held by walls as that of the other laws is.

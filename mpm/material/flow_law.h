@@ -12,11 +12,12 @@ namespace flowrest::mpm {
 template <class T>
 struct FlowParameters {
   T yield_stress{};         ///< Pa
-  T plastic_viscosity{};    ///< Pa s
+  T plastic_viscosity{};    ///< Pa s; of a power law Pa s^n
   T regularisation_time{};  ///< s
   T critical_shear_rate{};  ///< 1/s
   T flocculation_growth{};  ///< A_thix / tau0, 1/s
   T deflocculation{};       ///< alpha
+  T flow_index{1};          ///< n
 };
 
 /// What a step leaves of the trial.
@@ -121,7 +122,38 @@ struct Papanastasiou {
   }
 };
 
+/// What a balance leaves at a rate, Pa, and how steeply it falls there, Pa s.
+template <class T>
+struct Balance {
+  T residual, slope;
+};
+
+/// Herschel and Bulkley's fluid with its yield stress as Papanastasiou has it, and the power's viscosity taken
+/// at sqrt(x^2 + 1 / m^2): tau(x) = K x (x^2 + 1 / m^2)^((n - 1) / 2) + yield (1 - exp(-m x)). Where n > 1 the
+/// power bends against the yield stress, so that no start is safe for Newton's method alone: the loop over
+/// particles keeps the root between two rates.
+template <bool Thixotropic>
+struct HerschelBulkley {
+  static constexpr bool thixotropic = Thixotropic;
+  static constexpr bool iterative = true;
+
+  template <class T>
+  static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
+    const T time = p.regularisation_time, above = p.flow_index - T(1);
+    const T square = rate * rate + T(1) / (time * time);
+    const T viscosity = p.plastic_viscosity * power(square, T(0.5) * above);
+    const T lost = exponential_minus_one(-time * rate);
+    return {trial - (shear + viscosity) * rate + yield * lost,
+            shear + viscosity * (T(1) + above * rate * rate / square) + yield * time * (T(1) + lost)};
+  }
+};
+
 /// Shear stress of a fluid at a given rate: the explicit update, and the reference of the implicit one. Pa.
+template <class T>
+FLOWREST_INLINE T herschel_bulkley_stress(const FlowParameters<T>& p, T yield, T rate) {
+  return -HerschelBulkley<false>::balance(p, yield, T(0), T(0), rate).residual;
+}
+
 template <class T>
 FLOWREST_INLINE T papanastasiou_stress(const FlowParameters<T>& p, T yield, T rate) {
   return p.plastic_viscosity * rate - yield * exponential_minus_one(-p.regularisation_time * rate);

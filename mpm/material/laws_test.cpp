@@ -36,6 +36,8 @@ struct Tile {
     flow.critical_shear_rate = random.log_between(1e-4, 1e1);
     flow.flocculation_growth = random.chance(0.2) ? 0.0 : random.log_between(1e-5, 10.0);
     flow.deflocculation = random.chance(0.1) ? 0.0 : random.log_between(1e-9, 1e3);
+    if (law == laws::Law::herschel_bulkley)
+      flow.flow_index = random.chance(0.1) ? 1.0 : random.between(0.3, 1.5);
     const double yield = std::max(flow.yield_stress, 1e-3);
     for (int q = 0; q < particles; ++q) {
       lambda.push_back(!thixotropic || random.chance(0.2) ? 0.0 : random.log_between(1e-6, 1e3));
@@ -48,7 +50,7 @@ struct Tile {
 
   laws::Parameters<double> parameters() const {
     return {step.flow.yield_stress, step.flow.plastic_viscosity, step.flow.regularisation_time,
-            step.flow.critical_shear_rate};
+            step.flow.critical_shear_rate, step.flow.flow_index};
   }
   laws::Structure<double> structure() const {
     return {step.flow.flocculation_growth, step.flow.deflocculation};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "mpm/material/deviator.h"
 #include "mpm/material/flow_law.h"
 #include "mpm/solver/kernels.h"
@@ -133,26 +135,81 @@ void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s,
   for (int q = 0; q < count; ++q) s.stress[q] = s.trial[q] - s.shear[q] * s.rate[q];
 }
 
-/// Explicit fluid: the stress of the present rate. `Regularised`: Papanastasiou, else bi-viscous or
-/// Newtonian.
-template <class T, int Dim, bool Regularised, bool Thixotropic>
-void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+/// Newton's method on some particles at once, each within what is known to hold its root and by bisection
+/// where it would leave that, until the slowest has converged. A particle that balances stays as it is, so that
+/// its result does not depend on its neighbours.
+template <class T, int Dim, class Law>
+void relax_bracketed(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+  if constexpr (Law::thixotropic) flocculate(step, s, count);
+  constexpr int most = 64;                                      // at once
+  constexpr T tolerance = sizeof(T) == 8 ? T(1e-14) : T(2e-6);  // of the trial's stress
+  for (int first = 0; first < count; first += most) {
+    const int last = count < first + most ? count : first + most;
+    T low[most], high[most];
+    for (int i = 0; i < most; ++i) {
+      low[i] = T(-1);  // no lower end is known yet
+      high[i] = std::numeric_limits<T>::max();
+    }
+    for (int iteration = 0; iteration < 300; ++iteration) {
+      T change = T(0);
+#pragma omp simd reduction(max : change)
+      for (int q = first; q < last; ++q) {
+        const T rate = s.rate[q], below = low[q - first], above = high[q - first];
+        const auto at = Law::template balance<T>(step.flow, fluid_yield<T, Dim, Law::thixotropic>(step, s, q),
+                                                 s.trial[q], s.shear[q], rate);
+        const T relative = (at.residual > T(0) ? at.residual : -at.residual) / (s.trial[q] + T(1e-30));
+        const T new_below = at.residual > T(0) ? rate : below, new_above = at.residual > T(0) ? above : rate;
+        const T tried = maximum(rate + at.residual / at.slope, T(0));
+        const T next = tried > new_below && tried < new_above ? tried : T(0.5) * (new_below + new_above);
+        const bool goes_on = relative > tolerance && next > new_below && next < new_above;
+        low[q - first] = new_below;
+        high[q - first] = new_above;
+        s.rate[q] = goes_on ? next : rate;
+        change = goes_on && relative > change ? relative : change;
+      }
+      if (!(change > tolerance)) break;
+    }
+#pragma omp simd
+    for (int q = first; q < last; ++q) s.stress[q] = s.trial[q] - s.shear[q] * s.rate[q];
+  }
+}
+
+/// Explicit fluid: the stress of the present rate. `Curve` is `T(flow, yield, rate)`.
+template <class T, int Dim, bool Thixotropic, class Curve>
+void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int count, const Curve& curve) {
   if constexpr (Thixotropic) flocculate(step, s, count);
 #pragma omp simd
   for (int q = 0; q < count; ++q) {
     const T rate = s.trial[q];
     const T yield = fluid_yield<T, Dim, Thixotropic>(step, s, q);
     s.rate[q] = rate;
-    s.stress[q] = Regularised ? papanastasiou_stress(step.flow, yield, rate)
-                              : bi_viscous_stress(step.flow, yield, rate);
+    s.stress[q] = curve(step.flow, yield, rate);
+  }
+}
+
+template <class T, int Dim, bool Thixotropic>
+void relax_explicit_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
+  using Flow = FlowParameters<T>;
+  switch (step.law) {
+    case Law::papanastasiou:
+      return relax_explicit<T, Dim, Thixotropic>(step, s, count, [](const Flow& p, T yield, T rate) {
+        return papanastasiou_stress(p, yield, rate);
+      });
+    case Law::herschel_bulkley:
+      return relax_explicit<T, Dim, Thixotropic>(step, s, count, [](const Flow& p, T yield, T rate) {
+        return herschel_bulkley_stress(p, yield, rate);
+      });
+    case Law::elasto_viscoplastic:  // never explicit
+    case Law::bi_viscous:
+    case Law::newtonian:
+      return relax_explicit<T, Dim, Thixotropic>(
+          step, s, count, [](const Flow& p, T yield, T rate) { return bi_viscous_stress(p, yield, rate); });
   }
 }
 
 template <class T, int Dim, bool Thixotropic>
 void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
-  if (step.explicit_fluid)
-    return step.law == Law::papanastasiou ? relax_explicit<T, Dim, true, Thixotropic>(step, s, count)
-                                          : relax_explicit<T, Dim, false, Thixotropic>(step, s, count);
+  if (step.explicit_fluid) return relax_explicit_by_law<T, Dim, Thixotropic>(step, s, count);
   switch (step.law) {
     case Law::elasto_viscoplastic:
       return relax_closed<T, Dim, ElastoViscoplastic<Thixotropic>>(step, s, count);
@@ -160,6 +217,8 @@ void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int co
       return relax_papanastasiou<T, Dim, Thixotropic>(step, s, count);
     case Law::bi_viscous:
       return relax_closed<T, Dim, BiViscous<Thixotropic>>(step, s, count);
+    case Law::herschel_bulkley:
+      return relax_bracketed<T, Dim, HerschelBulkley<Thixotropic>>(step, s, count);
     case Law::newtonian:
       return relax_closed<T, Dim, Newtonian>(step, s, count);
   }

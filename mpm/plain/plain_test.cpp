@@ -109,6 +109,10 @@ SolverSettings with_law(SolverSettings s, laws::Law law, bool thixotropic) {
   s.thixotropic = thixotropic;
   if (thixotropic) s.structure = {.growth = 0.4, .breakdown = 0.2};
   if (!laws::has_yield_stress(law)) s.flow.yield_stress = 0.0;
+  if (law == laws::Law::herschel_bulkley) {
+    s.flow.flow_index = 0.6;
+    s.flow.plastic_viscosity = 150.0;  // Pa s^n
+  }
   return s;
 }
 
@@ -173,12 +177,16 @@ TEST(Plain, SlumpsAsTheKernelsDoInEveryDimensionAndLaw) {
 
 TEST(Plain, TakesTheChoicesOfTheScheme) {
   for (const Variant& v : dimensions)
-    for (const int choice : {0, 1, 2, 3}) {
+    for (const int choice : {0, 1, 2, 3, 4}) {
       SolverSettings s = test::concrete(v);
       s.flow.regularisation_time = 0.5;
       if (choice == 0) s.dilatation = Dilatation::cell_average;
-      if (choice == 1 || choice == 2) {  // explicit fluids
-        s = with_law(s, choice == 1 ? laws::Law::papanastasiou : laws::Law::bi_viscous, choice == 2);
+      if (choice == 1 || choice == 2 || choice == 4) {  // explicit fluids
+        s = with_law(s,
+                     choice == 1   ? laws::Law::papanastasiou
+                     : choice == 2 ? laws::Law::bi_viscous
+                                   : laws::Law::herschel_bulkley,
+                     choice == 2);
         s.explicit_fluid = true;
         s.flow.plastic_viscosity = 5.0;
         s.flow.critical_shear_rate = 4.0;

@@ -19,7 +19,8 @@ Material<T> material_of(const SolverSettings& s) {
              static_cast<T>(s.state.exponent)};
   m.law = s.law;
   m.parameters = {static_cast<T>(s.flow.yield_stress), static_cast<T>(s.flow.plastic_viscosity),
-                  static_cast<T>(s.flow.regularisation_time), static_cast<T>(s.flow.critical_shear_rate)};
+                  static_cast<T>(s.flow.regularisation_time), static_cast<T>(s.flow.critical_shear_rate),
+                  static_cast<T>(s.flow.flow_index)};
   m.thixotropic = s.thixotropic;
   m.structure = {static_cast<T>(s.structure.growth), static_cast<T>(s.structure.breakdown)};
   return m;

@@ -90,4 +90,64 @@ FLOWREST_INLINE T exponential_minus_one(T x) {
   return parts.scale * parts.fraction + (parts.scale - T(1));
 }
 
+/// ln(2) in two parts of which the first has so few digits that its product with an exponent is exact.
+template <class T>
+struct LogarithmOfTwo;
+template <>
+struct LogarithmOfTwo<double> {
+  static constexpr double high = 6.93147180369123816490e-01, low = 1.90821492927058770002e-10;
+};
+template <>
+struct LogarithmOfTwo<float> {
+  static constexpr float high = 0.693359375f, low = -2.12194440e-4f;
+};
+
+/// x = 2^exponent mantissa, the mantissa from sqrt(1/2) to sqrt(2), for a normal x above 0. The exponent is
+/// shifted out with its bias, which keeps it positive, and read as a number off another number's digits.
+template <class T>
+struct LogarithmParts {
+  T exponent, mantissa;
+};
+FLOWREST_INLINE LogarithmParts<double> logarithm_parts(double x) {
+  constexpr std::uint64_t root = 0x3fe6a09e667f3bcdu, bias = 1023u;  // of sqrt(1/2)
+  const std::uint64_t shifted = std::bit_cast<std::uint64_t>(x) - root + (bias << 52);
+  const std::uint64_t exponent = shifted >> 52, digits = shifted & 0x000fffffffffffffu;
+  return {std::bit_cast<double>(exponent | 0x4330000000000000u) - (0x1p52 + 1023.0),
+          std::bit_cast<double>(digits + root)};
+}
+FLOWREST_INLINE LogarithmParts<float> logarithm_parts(float x) {
+  constexpr std::uint32_t root = 0x3f3504f3u, bias = 127u;
+  const std::uint32_t shifted = std::bit_cast<std::uint32_t>(x) - root + (bias << 23);
+  const std::uint32_t exponent = shifted >> 23, digits = shifted & 0x007fffffu;
+  return {std::bit_cast<float>(exponent | 0x4b000000u) - (0x1p23f + 127.0f),
+          std::bit_cast<float>(digits + root)};
+}
+
+/// The natural logarithm of a normal x above 0, to a few units in the last place: 2 artanh((x - 1) / (x + 1))
+/// of the mantissa by its series, which within sqrt(1/2) to sqrt(2) ends after ten terms.
+template <class T>
+FLOWREST_INLINE T logarithm(T x) {
+  const auto parts = logarithm_parts(x);
+  const T s = (parts.mantissa - T(1)) / (parts.mantissa + T(1)), square = s * s;
+  T sum = T(1.0 / 21.0);
+  sum = sum * square + T(1.0 / 19.0);
+  sum = sum * square + T(1.0 / 17.0);
+  sum = sum * square + T(1.0 / 15.0);
+  sum = sum * square + T(1.0 / 13.0);
+  sum = sum * square + T(1.0 / 11.0);
+  sum = sum * square + T(1.0 / 9.0);
+  sum = sum * square + T(1.0 / 7.0);
+  sum = sum * square + T(1.0 / 5.0);
+  sum = sum * square + T(1.0 / 3.0);
+  const T of_mantissa = T(2) * s + T(2) * s * square * sum;
+  return parts.exponent * LogarithmOfTwo<T>::high + (of_mantissa + parts.exponent * LogarithmOfTwo<T>::low);
+}
+
+/// x^exponent for a normal x above 0, good to the logarithm's size in units of the last place; exactly 1 where
+/// the exponent is 0.
+template <class T>
+FLOWREST_INLINE T power(T x, T exponent) {
+  return exponential(exponent * logarithm(x));
+}
+
 }  // namespace flowrest::mpm

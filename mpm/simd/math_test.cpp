@@ -69,6 +69,31 @@ TEST(Exponential, ClampsWhatWouldOverflow) {
   EXPECT_LT(exponential(-1e30f), 1e-37f);
 }
 
+TEST(Logarithm, IsTheStandardOneHoweverNearItsRootOrFarFromIt) {
+  test::Random random(9);
+  for (int i = 0; i < 1000000; ++i) {
+    const double x = random.chance(0.5) ? random.log_between(1e-300, 1e300) : random.between(0.5, 2.0);
+    const long double exact = std::log(static_cast<long double>(x));
+    ASSERT_LE(std::abs(logarithm(x) - exact), 5e-16L * std::abs(exact)) << "x = " << x;
+    const auto single = static_cast<float>(x);
+    if (!(single > 1e-37f && single < 1e38f)) continue;
+    const long double single_exact = std::log(static_cast<long double>(single));
+    ASSERT_LE(std::abs(logarithm(single) - single_exact), 3e-7L * std::abs(single_exact)) << "x = " << x;
+  }
+  EXPECT_EQ(logarithm(1.0), 0.0);
+  EXPECT_EQ(logarithm(1.0f), 0.0f);
+}
+
+TEST(Power, IsTheStandardOneAndExactlyOneForNoPower) {
+  test::Random random(10);
+  for (int i = 0; i < 100000; ++i) {
+    const double x = random.log_between(1e-30, 1e30), exponent = random.between(-0.5, 0.5);
+    const long double exact = std::pow(static_cast<long double>(x), static_cast<long double>(exponent));
+    ASSERT_LE(std::abs(power(x, exponent) - exact), 2e-14L * exact) << x << "^" << exponent;
+    EXPECT_EQ(power(x, 0.0), 1.0);
+  }
+}
+
 TEST(Exponential, NeverFallsAsItsArgumentRisesAcrossTheReductionsSeams) {
   // Where n changes by one the polynomial's other end takes over.
   for (int n = -20; n <= 20; ++n) {

@@ -167,7 +167,8 @@ class SolverOf final : public Solver {
     p.flow = {
         static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
         static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
-        static_cast<T>(settings.structure.growth),         static_cast<T>(settings.structure.breakdown)};
+        static_cast<T>(settings.structure.growth),         static_cast<T>(settings.structure.breakdown),
+        static_cast<T>(settings.flow.flow_index)};
     p.state = {static_cast<T>(settings.state.bulk_modulus), static_cast<T>(settings.state.shear_modulus),
                static_cast<T>(settings.state.exponent)};
     p.law = settings.law;

@@ -2,6 +2,7 @@
 // AVX-512 in double precision.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -181,6 +182,24 @@ TEST_F(Slump, OfANewtonianFluidBecomesTheViscousGravityCurrent) {
                 scheme.c_str(), usual, gaping);
     EXPECT_NEAR(usual, 1.0, 0.025);
     EXPECT_GT(gaping, 1.03) << "the correction is tested on a slump that does not need it";
+  }
+}
+
+/// Sheared by more than 1 1/s everywhere that matters, concrete resists the more the larger the power.
+TEST_F(Slump, WithAPowerOfTheRateSpreadsTheLessTheLargerThePower) {
+  for (const std::string model : {"herschel-bulkley"}) {
+    double before = std::numeric_limits<double>::infinity();
+    for (const char* n : {"0.5", "1", "1.3"}) {
+      const auto run =
+          run_and_read(tiny_slump({"material.model=" + model, "runs.mpm=" + model, "runs.foam=" + model,
+                                   std::string("material.flow_index=") + n}),
+                       model + n);
+      const double spread = run.history.at("spread_mm").back();
+      std::printf("    %s, n = %s: %.1f mm\n", model.c_str(), n, spread);
+      EXPECT_LT(spread, before - 2.0) << model << ", n = " << n;
+      before = spread;
+    }
+    EXPECT_GT(before, 200.0) << model;
   }
 }
 

@@ -120,7 +120,9 @@ std::vector<Published> exact_numbers(const std::string& name, const scenes::Scen
     } else {
       if (stepped) continue;  // what stops has no velocity to be held against
       const compare::exact::DuctFlow flow{
-          {material.density, material.yield_stress, material.plastic_viscosity}, height, force};
+          {material.density, material.yield_stress, material.plastic_viscosity, material.flow_index},
+          height,
+          force};
       p.paper = flow.plug_velocity();
     }
     p.allowed = tolerance * *p.paper;
