@@ -14,7 +14,8 @@ struct Response {
 };
 
 /// The flow law as the minimisation needs it, with a viscosity at every rate. A law that can rest is rounded
-/// at rest: tau = (eta + tau0 / sqrt(rate^2 + rounding^2)) rate, which is Bingham's in the limit.
+/// at rest: tau = (eta + tau0 / sqrt(rate^2 + rounding^2)) rate, which is Bingham's in the limit; with a flow
+/// index n the consistency K takes eta's place times (rate^2 + rounding^2)^((n - 1) / 2).
 class Fluid {
  public:
   /// `rounding` in 1/s; laws that cannot rest do not read it.
@@ -24,11 +25,12 @@ class Fluid {
     return laws::visit(flow_.law, [&](auto own) -> Response {
       const auto& p = flow_.parameters;
       if constexpr (decltype(own)::can_rest) {
-        if (!(p.yield_stress > 0.0)) return {p.plastic_viscosity, p.plastic_viscosity};
+        if (!(p.yield_stress > 0.0) && p.flow_index == 1.0) return {p.plastic_viscosity, p.plastic_viscosity};
         const double square = rate * rate + rounding_ * rounding_;
-        const double plastic = p.yield_stress / std::sqrt(square);
-        return {p.plastic_viscosity + plastic,
-                p.plastic_viscosity + plastic * rounding_ * rounding_ / square};
+        const double plastic = p.yield_stress / std::sqrt(square), above = p.flow_index - 1.0;
+        const double viscous = p.plastic_viscosity * std::pow(square, 0.5 * above);
+        return {viscous + plastic,
+                viscous * (1.0 + above * rate * rate / square) + plastic * rounding_ * rounding_ / square};
       } else {
         return {own.viscosity(p, rate), own.tangent(p, rate)};
       }

@@ -77,7 +77,8 @@ double time_of(double k, double interval, double end) {
 }
 
 std::string model_name(const Problem& problem) {
-  return laws::can_rest(problem.flow.law) ? "bingham" : laws::name_of(problem.flow.law);
+  if (!laws::can_rest(problem.flow.law)) return laws::name_of(problem.flow.law);
+  return problem.flow.parameters.flow_index == 1.0 ? "bingham" : "herschel-bulkley, not regularised";
 }
 
 class ElementRun {
@@ -230,8 +231,12 @@ Resolution resolution_of(const Problem& problem, int columns) {
   resolution.rows = std::max(2, static_cast<int>(std::lround(6.0 * columns / standard_columns)));
   resolution.step_over_time = 0.03 * standard_columns / columns;
   const auto& material = problem.flow.parameters;
-  resolution.rounding = std::min(creep_strain / problem.end,
-                                 rounding_over_rate * material.yield_stress / material.plastic_viscosity);
+  // The rate at which what flows resists as much as what holds; without a yield stress none.
+  const double yields_at =
+      std::pow(material.yield_stress / material.plastic_viscosity, 1.0 / material.flow_index);
+  resolution.rounding = creep_strain / problem.end;
+  if (material.yield_stress > 0.0 || material.flow_index == 1.0)
+    resolution.rounding = std::min(resolution.rounding, rounding_over_rate * yields_at);
   return resolution;
 }
 

@@ -117,21 +117,27 @@ std::string common_coefficients(const Scene& scene, const std::string& indent) {
   return text + fmt::format("{}strainRate          {};\n", indent, scenes::to_string(scene.foam.strain_rate));
 }
 
-std::string plug_in_viscosity(const Scene& scene) {
-  const auto& material = scene.material;
+/// What a law is told that others do not have.
+std::string own_coefficients(const scenes::Material& material, const std::string& indent) {
   std::string own;
   for (const laws::Parameter parameter : laws::every_parameter) {
     const bool common =
         parameter == laws::Parameter::yield_stress || parameter == laws::Parameter::plastic_viscosity;
     if (common || !laws::needs(material.model, parameter)) continue;
     const std::string unit = laws::unit_of(parameter);
-    own += fmt::format("    {:<22}{};{}\n", dictionary_word(parameter),
+    own += fmt::format("{}{:<22}{};{}\n", indent, dictionary_word(parameter),
                        material.flow_curve().parameters.*laws::member_of<double>(parameter),
                        unit.empty() ? "" : "  // " + unit);
   }
+  return own;
+}
+
+std::string plug_in_viscosity(const Scene& scene) {
+  const auto& material = scene.material;
+  const std::string indent(4, ' ');
   return fmt::format("concreteViscosity\n{{\n    transportModel      {};\n{}{}}}\n",
                      laws::visit(material.model, [](auto law) { return plug_in_type(law); }),
-                     common_coefficients(scene, "    "), own);
+                     common_coefficients(scene, indent), own_coefficients(material, indent));
 }
 
 /// A law that can rest is a stress model; what the mixture is given as viscosity it does not use.
@@ -145,7 +151,7 @@ std::string plug_in_stress(const Scene& scene) {
       "{2}youngsModulus       {4};  // Pa\n{2}poissonRatio        {5};\n{6}        }}\n    }}\n}}\n",
       laws::visit(material.model, [](auto law) { return plug_in_type(law); }),
       material.plastic_viscosity / material.density, indent, material.density, material.youngs_modulus,
-      material.poisson_ratio, common_coefficients(scene, indent));
+      material.poisson_ratio, common_coefficients(scene, indent) + own_coefficients(material, indent));
 }
 
 std::string function_object(const std::string& type, const std::string& keywords) {

@@ -7,7 +7,8 @@
 namespace flowrest::foam {
 
 /// Shear rates of cells full of concrete, and what of them overstresses it: the rate over 1 + flocculation
-/// (runs/rest.h).
+/// (runs/rest.h);
+/// exactly so where the flow index is 1.
 class ConcreteRates {
  public:
   /// A cell's rate in 1/s and its concrete in m3; the flocculation of all cells, or none.

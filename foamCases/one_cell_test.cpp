@@ -144,6 +144,26 @@ TEST_F(OneCell, FlocculationDecaysInFlowAndGrowsAtRest) {
   EXPECT_NEAR(field("flocculation", 1)[0], lambda + 0.39 * (time() - begin), 1e-9);
 }
 
+/// Sheared for long past yield: tau0 + K rate^n.
+TEST_F(OneCell, TheElastoViscoplasticStressHasThePowerOfTheRate) {
+  const double rate = 0.1, modulus = 1e4;
+  for (const double n : {0.5, 1.3}) {
+    shear(scene("elasto-viscoplastic", 0.3,
+                {fmt::format("material.bulk_modulus={}", modulus * 2.9 / (3.0 * (1.0 - 0.9))),
+                 "material.poisson_ratio=0.45", "foam.max_time_step=0.0005",
+                 fmt::format("material.flow_index={}", n), "runs.mpm=elasto-viscoplastic",
+                 "runs.foam=elasto-viscoplastic"}),
+          rate);
+    const auto stress = field("stress", 6);
+    double square = 0.0;  // xx xy xz yy yz zz
+    for (const int i : {0, 3, 5}) square += 0.5 * stress[i] * stress[i];
+    for (const int i : {1, 2, 4}) square += stress[i] * stress[i];
+    const double expected = yield + viscosity * std::pow(rate, n);
+    EXPECT_NEAR(std::sqrt(square), expected, 1e-3 * expected) << n;
+    fs::remove_all(case_);
+  }
+}
+
 /// Elastic up to yield at G rate, then to tau0 + eta rate; the strains are small, so the turning of the
 /// stress is not seen.
 TEST_F(OneCell, TheElastoViscoplasticStressFollowsItsClosedForm) {

@@ -1,34 +1,43 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "laws/parameters.h"
+#include "laws/root.h"
 #include "laws/structure.h"
 
 namespace flowrest::laws {
 
 /// The elasto-viscoplastic Bingham solid of Yu et al. 2026: elastic below its yield stress, where its stress
-/// needs no flow, so that it truly comes to rest; tau = tau0 + eta rate above.
+/// needs no flow, so that it truly comes to rest; tau = tau0 + eta rate above, or with a flow index n other than 1
+/// that of Herschel and Bulkley, tau = tau0 + K rate^n.
 struct ElastoViscoplastic {
   static constexpr const char* name = "elasto-viscoplastic";
-  static constexpr Parameter needs[] = {Parameter::yield_stress, Parameter::plastic_viscosity};
+  static constexpr Parameter needs[] = {Parameter::yield_stress, Parameter::plastic_viscosity,
+                                        Parameter::flow_index};
   static constexpr bool can_rest = true;
   static constexpr bool creeps = false;
 
   /// Pa, in flow; at rest any stress up to the yield stress is.
   template <class T>
   static T stress(const Parameters<T>& p, const T& rate) {
-    return p.yield_stress + p.plastic_viscosity * rate;
+    using std::pow;
+    return p.yield_stress + p.plastic_viscosity * (is_linear(p) ? rate : pow(rate, p.flow_index));
   }
   template <class T>
-  static T tangent(const Parameters<T>& p, const T&) {
-    return p.plastic_viscosity;
+  static T tangent(const Parameters<T>& p, const T& rate) {
+    using std::pow;
+    return is_linear(p) ? p.plastic_viscosity
+                        : p.flow_index * p.plastic_viscosity * pow(rate, p.flow_index - T(1));
   }
   template <class T>
   static T rate(const Parameters<T>& p, const T& stress) {
-    return larger(stress - p.yield_stress, T(0)) / p.plastic_viscosity;
+    using std::pow;
+    const T linear = larger(stress - p.yield_stress, T(0)) / p.plastic_viscosity;
+    return is_linear(p) ? linear : pow(linear, T(1) / p.flow_index);
   }
-  /// Pa s. Below yield it is elastic, which limits no step by viscosity.
+  /// Pa s, with a flow index that at 1 1/s. Below yield it is elastic, which limits no step by viscosity.
   template <class T>
   static T largest_viscosity(const Parameters<T>& p) {
     return p.plastic_viscosity;
@@ -39,11 +48,12 @@ struct ElastoViscoplastic {
     return T(0);
   }
 
-  /// The return map in closed form, Yu et al. 2026, Eq. 47.
+  /// The return map, in closed form where the flow index is 1 (Yu et al. 2026, Eq. 47).
   template <class T>
   static Relaxed<T> relax(const Parameters<T>& p, const Trial<T>& trial, const T& /*rate_before*/) {
     const T excess = trial.stress - p.yield_stress;
     if (!(excess > T(0))) return {trial.stress, T(0), T(0)};
+    if (!is_linear(p)) return by_power(p, trial, T(0), T(0));
     const T rate = excess / (trial.shear + p.plastic_viscosity);
     return {trial.stress - trial.shear * rate, rate, T(0)};
   }
@@ -60,12 +70,42 @@ struct ElastoViscoplastic {
     const T lambda_trial = lambda + structure.growth * step;                 // Eq. 38
     const T excess = trial.stress - (T(1) + lambda_trial) * p.yield_stress;  // Eq. 39
     if (!(excess > T(0))) return {trial.stress, T(0), lambda_trial};
+    if (!is_linear(p)) return by_power(p, trial, lambda_trial, step * structure.breakdown);
     const T xi = viscosity + step * structure.breakdown * (p.yield_stress - trial.stress);  // Eq. 43
     const T zeta = T(2) * structure.breakdown * step * viscosity;
     const T root = sqrt(xi * xi + T(2) * zeta * excess);
     const T rate = xi < T(0) ? (root - xi) / zeta : T(2) * excess / (xi + root);
     return {trial.stress - trial.shear * rate, rate,
             lambda_trial / (T(1) + step * structure.breakdown * rate)};  // Eq. 45
+  }
+
+ private:
+  template <class T>
+  static bool is_linear(const Parameters<T>& p) {
+    return !(p.flow_index < T(1) || p.flow_index > T(1));
+  }
+
+  /// Past yield, with a structure of which `broken` times the rate breaks down:
+  ///
+  ///   trial - G dt x = (1 + lambda_trial / (1 + broken x)) tau0 + K x^n.
+  ///
+  /// The start lies below the root: G dt and K take at most half each of what the trial has past yield, and
+  /// breakdown only adds to that. From 0, where the power of n < 1 is infinitely steep, no step would lead away.
+  template <class T>
+  static Relaxed<T> by_power(const Parameters<T>& p, const Trial<T>& trial, const T& lambda_trial,
+                             const T& broken) {
+    using std::pow;
+    const T half = T(0.5) * (trial.stress - (T(1) + lambda_trial) * p.yield_stress);
+    const T start = smaller(half / trial.shear, pow(half / p.plastic_viscosity, T(1) / p.flow_index));
+    const T rate = root_of(
+        [&](const T& x) {
+          const T left = T(1) / (T(1) + broken * x), power = p.plastic_viscosity * pow(x, p.flow_index);
+          return Balance<T>{
+              trial.stress - (T(1) + lambda_trial * left) * p.yield_stress - trial.shear * x - power,
+              trial.shear + p.flow_index * power / x - lambda_trial * p.yield_stress * broken * left * left};
+        },
+        start, T(64) * std::numeric_limits<T>::epsilon() * trial.stress, most_of(trial));
+    return {trial.stress - trial.shear * rate, rate, lambda_trial / (T(1) + broken * rate)};
   }
 };
 

@@ -47,7 +47,8 @@ struct HerschelBulkley {
   }
   template <class T>
   static T rate(const Parameters<T>& p, const T& wanted) {
-    return balanced(p, Trial<T>{wanted, T(0)}, T(0), T(8) * std::numeric_limits<T>::epsilon() * wanted);
+    return balanced(p, Trial<T>{wanted, T(0)}, T(0), T(8) * std::numeric_limits<T>::epsilon() * wanted,
+                    std::numeric_limits<T>::max());
   }
   /// At rest, and where n > 1 as fast as concrete is ever sheared, Pa s.
   template <class T>
@@ -65,7 +66,8 @@ struct HerschelBulkley {
   /// From the last step's rate.
   template <class T>
   static Relaxed<T> relax(const Parameters<T>& p, const Trial<T>& trial, const T& rate_before) {
-    const T rate = balanced(p, trial, rate_before, T(64) * std::numeric_limits<T>::epsilon() * trial.stress);
+    const T tolerance = T(64) * std::numeric_limits<T>::epsilon() * trial.stress;
+    const T rate = balanced(p, trial, rate_before, tolerance, most_of(trial));
     return {trial.stress - trial.shear * rate, rate, T(0)};
   }
 
@@ -89,13 +91,14 @@ struct HerschelBulkley {
   }
   /// Where what the rate relaxes leaves its own stress.
   template <class T>
-  static T balanced(const Parameters<T>& p, const Trial<T>& trial, const T& start, const T& tolerance) {
+  static T balanced(const Parameters<T>& p, const Trial<T>& trial, const T& start, const T& tolerance,
+                    const T& most) {
     return root_of(
         [&](const T& rate) {
           return Balance<T>{trial.stress - trial.shear * rate - stress(p, rate),
                             trial.shear + tangent(p, rate)};
         },
-        start, tolerance);
+        start, tolerance, most);
   }
 };
 

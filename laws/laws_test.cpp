@@ -172,6 +172,27 @@ TEST(Laws, TheSolidsElasticStartYieldsAndReachesTheBinghamStress) {
   }
 }
 
+TEST(ElastoViscoplastic, OfAPowerReturnsToYieldAndThePowerPastIt) {
+  for (const double n : indices)
+    for (const double past : {1e-9, 1e-3, 1.0, 400.0, 1e6})
+      for (const double shear : {0.1, 10.0, 1e3}) {
+        const auto p = power_law(n);
+        const double trial = yield + past;
+        const auto relaxed = ElastoViscoplastic::relax(p, Trial<double>{trial, shear}, 0.3);
+        ASSERT_GE(relaxed.rate, 0.0);
+        EXPECT_NEAR(relaxed.stress, yield + viscosity * std::pow(relaxed.rate, n), 1e-12 * trial)
+            << n << " past yield by " << past << ", " << shear;
+        const double nearly = n == 1.0 ? 1.0 + 1e-13 : n;  // the search where there is a closed form
+        const auto searched = ElastoViscoplastic::relax(power_law(nearly), Trial<double>{trial, shear}, 0.3);
+        EXPECT_NEAR(searched.stress, relaxed.stress, 1e-11 * trial) << n << " past yield by " << past;
+      }
+  for (const double n : indices) {
+    const auto at_rest = ElastoViscoplastic::relax(power_law(n), Trial<double>{49.9, 40.0}, 0.3);
+    EXPECT_EQ(at_rest.rate, 0.0);
+    EXPECT_EQ(at_rest.stress, 49.9);
+  }
+}
+
 /// Left alone, stress above yield relaxes to it and no further: the material is at rest under load.
 TEST(Laws, AtRestTheYieldStressStays) {
   double stress = 80.0;
@@ -201,6 +222,27 @@ TEST(Thixotropy, TheSolidsReturnMapBalancesForEveryBreakdown) {
         EXPECT_NEAR(trial, expected, 1e-9 * trial) << alpha << " " << trial << " " << lambda;
         EXPECT_NEAR(relaxed.flocculation, structure.stepped(lambda, relaxed.rate, dt), 1e-12 * (1 + lambda));
       }
+}
+
+TEST(Thixotropy, TheSolidsReturnOfAPowerBalancesForEveryBreakdown) {
+  for (const double n : indices)
+    for (const double alpha : {0.0, 1e-6, 0.15, 1.0, 1e3})
+      for (const double trial : {60.0, 150.0, 1e3, 1e6})
+        for (const double lambda : {0.0, 0.5, 1.8}) {
+          const Structure<double> structure{0.39 / yield, alpha};
+          const double dt = 1e-3;
+          const auto relaxed = Thixotropic<ElastoViscoplastic>::relax(
+              power_law(n), structure, Trial<double>{trial, modulus * dt}, dt, lambda, 0.0);
+          if (relaxed.rate == 0.0) {
+            EXPECT_LE(trial, (1.0 + lambda + structure.growth * dt) * yield);
+            continue;
+          }
+          const double expected = (1.0 + relaxed.flocculation) * yield +
+                                  viscosity * std::pow(relaxed.rate, n) + modulus * dt * relaxed.rate;
+          EXPECT_NEAR(trial, expected, 1e-9 * trial) << n << " " << alpha << " " << trial << " " << lambda;
+          EXPECT_NEAR(relaxed.flocculation, structure.stepped(lambda, relaxed.rate, dt),
+                      1e-12 * (1 + lambda));
+        }
 }
 
 TEST(Thixotropy, AnyLawWithoutStructureIsTheLawItself) {

@@ -24,6 +24,7 @@ Rest::Rest(const scenes::Scene& scene)
   const auto& material = scene.material;
   if (laws::can_rest(material.model) && material.yield_stress > 0.0)
     viscosity_over_yield_ = material.plastic_viscosity / material.yield_stress;
+  flow_index_ = material.flow_index;
 }
 
 double Rest::patience(double time) const {

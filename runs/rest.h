@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,7 +29,8 @@ class Rest {
   bool can_rest() const { return viscosity_over_yield_ > 0.0; }
   /// Of a place that shears at this rate in 1/s and is flocculated so; 0 of material that cannot rest.
   double overstress(double shear_rate, double flocculation = 0.0) const {
-    return viscosity_over_yield_ * shear_rate / (1.0 + flocculation);
+    const double power = flow_index_ == 1.0 ? shear_rate : std::pow(shear_rate, flow_index_);
+    return viscosity_over_yield_ * power / (1.0 + flocculation);
   }
 
   /// `overstress` is the one that governs; `nothing` where there is none to read, which is no rest. s
@@ -50,7 +52,8 @@ class Rest {
  private:
   double last_change_of_force(double time) const;
 
-  double viscosity_over_yield_ = 0.0;  ///< s; 0: cannot rest
+  double viscosity_over_yield_ = 0.0;  ///< s^n; 0: cannot rest
+  double flow_index_ = 1.0;            ///< n
   bool stops_;
   double bound_;  ///< on the growth to come
   double height_, gravity_, density_;

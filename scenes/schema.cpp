@@ -110,9 +110,10 @@ std::vector<Key> material_keys() {
           "plastic viscosity eta; where flow_index is not 1 the consistency K in Pa s^n, the stress that the "
           "flow adds to the yield stress at 1 1/s")
           .needed(),
-      number("material.flow_index", "", {0.3, 1.5}, AT(draft.scene.material.flow_index),
-             "flow index n of herschel-bulkley, the power of the shear rate: below 1 concrete thins as it is "
-             "sheared faster, above 1 it thickens; other models have 1"),
+      number(
+          "material.flow_index", "", {0.3, 1.5}, AT(draft.scene.material.flow_index),
+          "flow index n of elasto-viscoplastic and herschel-bulkley, the power of the shear rate: below 1 concrete thins as it is "
+          "sheared faster, above 1 it thickens; other models have 1"),
       number("material.youngs_modulus", "Pa", above(0.0, largest_stress),
              AT(draft.scene.material.youngs_modulus), "Young's modulus E")
           .otherwise("needed unless bulk_modulus is given")

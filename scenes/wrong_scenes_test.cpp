@@ -193,8 +193,8 @@ const Wrong wrong_scenes[] = {
      "wrong.toml:11:2: material.regularisation_time is missing; needed by the model papanastasiou"},
     {"FlowIndexWithoutAPower", slump_text, "plastic_viscosity = 50.0",
      "plastic_viscosity = 50.0\nflow_index = 0.5",
-     "wrong.toml:16:14: material.flow_index is 0.5, which the model elasto-viscoplastic does not have; allowed: "
-     "1, or only herschel-bulkley as material.model and in runs"},
+     "wrong.toml:16:14: material.flow_index is 0.5, which the model papanastasiou does not have; allowed: "
+     "1, or only elasto-viscoplastic, herschel-bulkley as material.model and in runs"},
     {"FlowIndexOfNoConcrete", slump_text, "plastic_viscosity = 50.0",
      "plastic_viscosity = 50.0\nflow_index = 2",
      "wrong.toml:16:14: material.flow_index is 2; allowed: at least 0.3, at most 1.5"},

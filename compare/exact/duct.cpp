@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "laws/elasto_viscoplastic.h"
+
 namespace flowrest::compare::exact {
 
 double profile_error(const runs::Profile& profile, double height,
@@ -22,7 +24,9 @@ double profile_error(const runs::Profile& profile, double height,
 double duct_stopping_time(const DuctFlow& before, double driving, double slow) {
   constexpr int cells = 250;
   constexpr double modulus = 7e5, longest = 20.0;
-  const auto [density, yield, viscosity, index] = before.material;
+  const double density = before.material.density;
+  const laws::Parameters<double> law{before.material.yield_stress, before.material.plastic_viscosity, 0.0,
+                                     0.0, before.material.flow_index};
   const double half = 0.5 * before.height, dy = half / cells, dt = 0.5 * dy / std::sqrt(modulus / density);
   std::vector<double> velocity, stress;  // from the wall
   for (int i = 0; i < cells; ++i) velocity.push_back(before.velocity(half - (i + 0.5) * dy));
@@ -34,8 +38,9 @@ double duct_stopping_time(const DuctFlow& before, double driving, double slow) {
     for (std::size_t i = 0; i + 1 < stress.size(); ++i) {
       const double gradient = i == 0 ? velocity[0] / (0.5 * dy) : (velocity[i] - velocity[i - 1]) / dy;
       const double trial = stress[i] + modulus * dt * gradient;
-      const double rate = std::max(std::abs(trial) - yield, 0.0) / (viscosity + modulus * dt);
-      stress[i] = trial - std::copysign(modulus * dt * rate, trial);
+      const double kept =
+          laws::ElastoViscoplastic::relax<double>(law, {std::abs(trial), modulus * dt}, 0.0).stress;
+      stress[i] = std::copysign(kept, trial);
     }
   }
   return time;

@@ -78,6 +78,7 @@ elastoViscoplasticBingham::elastoViscoplasticBingham(
         << "allowed: arithmetic, massWeighted, saturating" << exit(FatalIOError);
   law_.yield_stress = coeffDict_.get<scalar>("yieldStress");
   law_.plastic_viscosity = coeffDict_.get<scalar>("plasticViscosity");
+  law_.flow_index = coeffDict_.getOrDefault<scalar>("flowIndex", 1.0);
   if (const dictionary* thixotropy = coeffDict_.findDict("thixotropy")) {
     flocculation_ = std::make_unique<flowrest::rheology::Flocculation>(
         phase_, *thixotropy, dimensionedScalar("yieldStress", dimPressure, law_.yield_stress));

@@ -14,7 +14,7 @@ namespace laminarModels {
 /// flow.
 ///
 /// The deviatoric stress is state: carried with the concrete, turned with the spin (Hughes and Winget 1980),
-/// strained elastically with the new velocity and returned to the flow law in closed form, cell by cell and
+/// strained elastically with the new velocity and returned to the flow law, cell by cell and
 /// on the walls, once the velocity of the step is known. The momentum equation takes it semi-implicitly: in
 /// the face's traction
 ///
@@ -29,7 +29,7 @@ namespace laminarModels {
 /// what a wall remembers never passes it.
 ///
 /// Coefficients: `phase` (concrete unless given), `rho` (kg/m3), `youngsModulus` (Pa), `poissonRatio`,
-/// `yieldStress` (Pa), `plasticViscosity` (Pa s), those of flowrest::rheology::PhaseRules, `faceWeight`
+/// `yieldStress` (Pa), `plasticViscosity` (Pa s), `flowIndex` (1 unless given), those of flowrest::rheology::PhaseRules, `faceWeight`
 /// (harmonic | linear) and the optional `thixotropy` of flowrest::rheology::Flocculation. Fields: `stress`
 /// (Pa) and `plasticShearRate` (1/s).
 class elastoViscoplasticBingham : public incompressible::laminarModel {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "mpm/simd/math.h"
 
 /// The flow laws, each as what happens to the shear stress invariant of the elastic trial within one step.
@@ -137,8 +139,23 @@ struct HerschelBulkley {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = true;
 
+  /// Where the search for the rate starts, with the lambda it is made with.
   template <class T>
-  static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T yield, T trial, T shear, T rate) {
+  static FLOWREST_INLINE Relaxed<T> start(const FlowParameters<T>& p, T /*trial*/, T /*shear*/, T dt,
+                                          T lambda, T rate_before) {
+    if constexpr (!Thixotropic) return {T(0), rate_before, T(0)};
+    return {T(0), rate_before,
+            (lambda + p.flocculation_growth * dt) / (T(1) + dt * p.deflocculation * rate_before)};
+  }
+  /// lambda at the rate that is found.
+  template <class T>
+  static FLOWREST_INLINE T lambda_at(const FlowParameters<T>&, T /*dt*/, T lambda, T /*rate*/) {
+    return lambda;
+  }
+  template <class T>
+  static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T trial, T shear, T /*dt*/, T lambda,
+                                            T rate) {
+    const T yield = Thixotropic ? p.yield_stress * (T(1) + lambda) : p.yield_stress;
     const T time = p.regularisation_time, above = p.flow_index - T(1);
     const T square = rate * rate + T(1) / (time * time);
     const T viscosity = p.plastic_viscosity * power(square, T(0.5) * above);
@@ -148,10 +165,53 @@ struct HerschelBulkley {
   }
 };
 
+/// The elasto-viscoplastic solid with a power of the rate, tau0 + K x^n, and breakdown within the step as
+/// above.
+template <bool Thixotropic>
+struct ElastoViscoplasticPower {
+  static constexpr bool thixotropic = Thixotropic;
+  static constexpr bool iterative = true;
+
+  /// Below the root: either of what resists takes half of what the trial has past yield. Below yield 0, where
+  /// nothing is left to balance.
+  template <class T>
+  static FLOWREST_INLINE Relaxed<T> start(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
+                                          T /*rate_before*/) {
+    const T lambda_trial = Thixotropic ? lambda + p.flocculation_growth * dt : T(0);
+    const T half = T(0.5) * (trial - (T(1) + lambda_trial) * p.yield_stress);
+    const T viscous = raised(half / maximum(p.plastic_viscosity, smallest<T>), T(1) / p.flow_index);
+    return {T(0), half > T(0) ? minimum(half / shear, viscous) : T(0), lambda_trial};
+  }
+  template <class T>
+  static FLOWREST_INLINE T lambda_at(const FlowParameters<T>& p, T dt, T lambda, T rate) {
+    return lambda / (T(1) + dt * p.deflocculation * rate);
+  }
+  template <class T>
+  static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
+                                            T rate) {
+    const T power_part = p.plastic_viscosity * raised(rate, p.flow_index);
+    const T slope = shear + p.flow_index * power_part / maximum(rate, smallest<T>);
+    if constexpr (!Thixotropic)
+      return {rate > T(0) ? trial - p.yield_stress - shear * rate - power_part : T(0), slope};
+    const T broken = dt * p.deflocculation, left = T(1) / (T(1) + broken * rate);
+    return {rate > T(0) ? trial - (T(1) + lambda * left) * p.yield_stress - shear * rate - power_part : T(0),
+            slope - lambda * p.yield_stress * broken * left * left};
+  }
+
+ private:
+  template <class T>
+  static constexpr T smallest = std::numeric_limits<T>::min();
+  template <class T>
+  static FLOWREST_INLINE T raised(T rate, T exponent) {
+    return power(minimum(maximum(rate, smallest<T>), std::numeric_limits<T>::max()), exponent);
+  }
+};
+
 /// Shear stress of a fluid at a given rate: the explicit update, and the reference of the implicit one. Pa.
 template <class T>
-FLOWREST_INLINE T herschel_bulkley_stress(const FlowParameters<T>& p, T yield, T rate) {
-  return -HerschelBulkley<false>::balance(p, yield, T(0), T(0), rate).residual;
+FLOWREST_INLINE T herschel_bulkley_stress(FlowParameters<T> p, T yield, T rate) {
+  p.yield_stress = yield;
+  return -HerschelBulkley<false>::balance(p, T(0), T(0), T(0), T(0), rate).residual;
 }
 
 template <class T>

@@ -36,7 +36,7 @@ struct Tile {
     flow.critical_shear_rate = random.log_between(1e-4, 1e1);
     flow.flocculation_growth = random.chance(0.2) ? 0.0 : random.log_between(1e-5, 10.0);
     flow.deflocculation = random.chance(0.1) ? 0.0 : random.log_between(1e-9, 1e3);
-    if (law == laws::Law::herschel_bulkley)
+    if (laws::needs(law, laws::Parameter::flow_index))
       flow.flow_index = random.chance(0.1) ? 1.0 : random.between(0.3, 1.5);
     const double yield = std::max(flow.yield_stress, 1e-3);
     for (int q = 0; q < particles; ++q) {

@@ -140,37 +140,52 @@ void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s,
 /// its result does not depend on its neighbours.
 template <class T, int Dim, class Law>
 void relax_bracketed(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
-  if constexpr (Law::thixotropic) flocculate(step, s, count);
   constexpr int most = 64;                                      // at once
   constexpr T tolerance = sizeof(T) == 8 ? T(1e-14) : T(2e-6);  // of the trial's stress
   for (int first = 0; first < count; first += most) {
-    const int last = count < first + most ? count : first + most;
-    T low[most], high[most];
-    for (int i = 0; i < most; ++i) {
+    const int particles = count - first < most ? count - first : most;
+    T low[most], high[most], lambda[most];
+#pragma omp simd
+    for (int i = 0; i < particles; ++i) {
+      const int q = first + i;
+      const Relaxed<T> start = Law::template start<T>(step.flow, s.trial[q], s.shear[q], step.step,
+                                                      Law::thixotropic ? s.lambda[q] : T(0), s.rate[q]);
+      s.rate[q] = start.rate;
+      lambda[i] = start.lambda;
       low[i] = T(-1);  // no lower end is known yet
-      high[i] = std::numeric_limits<T>::max();
+      // There the elastic relaxation alone takes more than all; not 0 where there is nothing to take.
+      high[i] = T(1) + T(2) * s.trial[q] / s.shear[q];
     }
     for (int iteration = 0; iteration < 300; ++iteration) {
       T change = T(0);
 #pragma omp simd reduction(max : change)
-      for (int q = first; q < last; ++q) {
-        const T rate = s.rate[q], below = low[q - first], above = high[q - first];
-        const auto at = Law::template balance<T>(step.flow, fluid_yield<T, Dim, Law::thixotropic>(step, s, q),
-                                                 s.trial[q], s.shear[q], rate);
+      for (int i = 0; i < particles; ++i) {
+        const int q = first + i;
+        const T rate = s.rate[q], below = low[i], above = high[i];
+        const auto at =
+            Law::template balance<T>(step.flow, s.trial[q], s.shear[q], step.step, lambda[i], rate);
         const T relative = (at.residual > T(0) ? at.residual : -at.residual) / (s.trial[q] + T(1e-30));
-        const T new_below = at.residual > T(0) ? rate : below, new_above = at.residual > T(0) ? above : rate;
+        const T new_below = at.residual > T(0) ? rate : below;
+        const T new_above = at.residual > T(0) ? above : minimum(above, rate);
         const T tried = maximum(rate + at.residual / at.slope, T(0));
-        const T next = tried > new_below && tried < new_above ? tried : T(0.5) * (new_below + new_above);
-        const bool goes_on = relative > tolerance && next > new_below && next < new_above;
-        low[q - first] = new_below;
-        high[q - first] = new_above;
+        const T next =
+            tried > new_below && tried < new_above ? tried : T(0.5) * (maximum(new_below, T(0)) + new_above);
+        const bool moves = tried != rate && next > new_below && next < new_above;
+        const bool goes_on = relative > tolerance && moves;
+        low[i] = new_below;
+        high[i] = new_above;
         s.rate[q] = goes_on ? next : rate;
         change = goes_on && relative > change ? relative : change;
       }
       if (!(change > tolerance)) break;
     }
 #pragma omp simd
-    for (int q = first; q < last; ++q) s.stress[q] = s.trial[q] - s.shear[q] * s.rate[q];
+    for (int i = 0; i < particles; ++i) {
+      const int q = first + i;
+      s.stress[q] = s.trial[q] - s.shear[q] * s.rate[q];
+      if constexpr (Law::thixotropic)
+        s.lambda[q] = Law::template lambda_at<T>(step.flow, step.step, lambda[i], s.rate[q]);
+    }
   }
 }
 
@@ -212,7 +227,10 @@ void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int co
   if (step.explicit_fluid) return relax_explicit_by_law<T, Dim, Thixotropic>(step, s, count);
   switch (step.law) {
     case Law::elasto_viscoplastic:
-      return relax_closed<T, Dim, ElastoViscoplastic<Thixotropic>>(step, s, count);
+      // A flow index of 1 keeps its closed form.
+      return step.flow.flow_index == T(1)
+                 ? relax_closed<T, Dim, ElastoViscoplastic<Thixotropic>>(step, s, count)
+                 : relax_bracketed<T, Dim, ElastoViscoplasticPower<Thixotropic>>(step, s, count);
     case Law::papanastasiou:
       return relax_papanastasiou<T, Dim, Thixotropic>(step, s, count);
     case Law::bi_viscous:

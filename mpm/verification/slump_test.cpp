@@ -187,7 +187,7 @@ TEST_F(Slump, OfANewtonianFluidBecomesTheViscousGravityCurrent) {
 
 /// Sheared by more than 1 1/s everywhere that matters, concrete resists the more the larger the power.
 TEST_F(Slump, WithAPowerOfTheRateSpreadsTheLessTheLargerThePower) {
-  for (const std::string model : {"herschel-bulkley"}) {
+  for (const std::string model : {"herschel-bulkley", "elasto-viscoplastic"}) {
     double before = std::numeric_limits<double>::infinity();
     for (const char* n : {"0.5", "1", "1.3"}) {
       const auto run =
