@@ -17,24 +17,6 @@ void check_supported(const scenes::Scene&);
 /// The folder of the cases: FLOWREST_FOAM_CASES where set, else those that flowrest brings.
 std::filesystem::path cases_folder();
 
-/// Cells of a duct from plate to plate: foam.cell fitted to its height.
-std::size_t duct_cells(const scenes::Scene&);
-
-/// The folder of the scene's case among the cases: its kind, and slump-quarter.
-std::string case_name(const scenes::Scene&);
-
-/// A quarter's initial fraction as the entry internalField, a line to a row of cells.
-std::string initial_fraction(const scenes::Scene&);
-
-/// The blockMeshDict of an L-box, a V-funnel or a dam break.
-std::string vessel_block_mesh(const scenes::Scene&);
-
-/// The createBafflesDict that lays an L-box's gate between the cells; empty without one.
-std::string gate_baffles(const scenes::Scene&);
-
-/// Cells of the scene's mesh.
-std::size_t mesh_cells(const scenes::Scene&);
-
 /// Components of the velocity that a case solves for: those whose residuals tell of noise.
 std::string solved_components(const scenes::Scene&);
 

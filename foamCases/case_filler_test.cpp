@@ -7,8 +7,8 @@
 #include <map>
 #include <sstream>
 
+#include "foamCases/apparatus/apparatus.h"
 #include "foamCases/test_scene.h"
-#include "foamCases/vessel_mesh.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
 #include "scenes/step_limits.h"
@@ -64,8 +64,9 @@ TEST(CaseFiller, TheCommittedQuarterIsTheRousselSlumpOnCoarseCells) {
       << "foamCases/slump-quarter/sceneParameters is what `flowrest foam roussel-slump --model papanastasiou "
          "--set "
          "geometry.dimension=quarter --set foam.cell=0.03 --set foam.laws=built-in` writes";
+  const auto quarter = committed_quarter();
   EXPECT_THAT(text_of(cases_folder() / "slump-quarter" / "0.orig" / "alpha.concrete"),
-              HasSubstr(initial_fraction(committed_quarter()) + ";"))
+              HasSubstr(case_of(quarter)->initial_fraction() + ";"))
       << "and so is 0.orig/alpha.concrete";
 }
 
@@ -76,6 +77,13 @@ TEST(CaseFiller, TheCommittedDuctIsTheStepDown) {
       << "foamCases/duct/sceneParameters is what `flowrest foam poiseuille-step-down --model papanastasiou "
          "--set "
          "foam.laws=built-in` writes";
+}
+
+/// What a scene's case gets in place of a file of its folder; empty where it is not written.
+std::string written_file(const scenes::Scene& scene, const fs::path& path) {
+  for (const CaseFile& file : case_of(scene)->files())
+    if (file.path == path) return file.text;
+  return "";
 }
 
 /// Coarse, so that they can be read and run while one waits.
@@ -90,14 +98,16 @@ scenes::Scene committed_vessel(const std::string& kind) {
 TEST(CaseFiller, TheCommittedVesselsAreScenesOnCoarseCells) {
   for (const char* kind : {"dam-break", "l-box", "v-funnel"}) {
     const auto scene = committed_vessel(kind);
-    EXPECT_EQ(case_name(scene), kind);
+    EXPECT_EQ(case_of(scene)->folder(), kind);
     EXPECT_EQ(text_of(cases_folder() / kind / "sceneParameters"), scene_parameters(scene, true))
         << "foamCases/" << kind << "/sceneParameters is what `flowrest foam " << scene.name
         << "` writes with --set foam.cell=" << scene.foam.cell << " --model "
         << scenes::to_string(scene.material.model);
-    EXPECT_EQ(text_of(cases_folder() / kind / "system" / "blockMeshDict"), vessel_block_mesh(scene));
+    EXPECT_EQ(text_of(cases_folder() / kind / "system" / "blockMeshDict"),
+              written_file(scene, "system/blockMeshDict"));
     const auto baffles = cases_folder() / kind / "system" / "createBafflesDict";
-    EXPECT_EQ(std::filesystem::exists(baffles) ? text_of(baffles) : "", gate_baffles(scene));
+    EXPECT_EQ(std::filesystem::exists(baffles) ? text_of(baffles) : "",
+              written_file(scene, "system/createBafflesDict"));
   }
 }
 
@@ -116,12 +126,13 @@ TEST(CaseFiller, AVesselsConcreteStandsInABoxBetweenWallsOfTheScene) {
 TEST(CaseFiller, AGateIsAPlateBeforeTheOpeningOfAnLBoxThatHasOne) {
   auto scene = scenes::load_scene("mix-a-lbox-sf0", {{"geometry.gate_lift_velocity=0.3"}, std::nullopt});
   EXPECT_THAT(scene_parameters(scene, true), HasSubstr("velocity        0.3;  // m/s"));
-  EXPECT_THAT(gate_baffles(scene), HasSubstr("origin      (0.10001 -0.001 -0.001);"));
+  EXPECT_THAT(written_file(scene, "system/createBafflesDict"),
+              HasSubstr("origin      (0.10001 -0.001 -0.001);"));
   auto open = scene.l_box();
   open.gate_lift_velocity.reset();
   scene.geometry.apparatus = open;
   EXPECT_THAT(scene_parameters(scene, true), ::testing::Not(HasSubstr("liftedGate")));
-  EXPECT_EQ(gate_baffles(scene), "");
+  EXPECT_EQ(written_file(scene, "system/createBafflesDict"), "");
   // A case that was filled with a gate is filled again without.
   const TemporaryFolder folder;
   const std::filesystem::path plug_in = "libflowrestRheology.so";

@@ -5,8 +5,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "foamCases/function_object.h"
 #include "foamCases/plug_in.h"
-#include "foamCases/vessel_mesh.h"
 #include "foamCases/viscosity.h"
 #include "scenes/step_limits.h"
 
@@ -154,13 +154,6 @@ std::string plug_in_stress(const Scene& scene) {
       material.poisson_ratio, common_coefficients(scene, indent) + own_coefficients(material, indent));
 }
 
-std::string function_object(const std::string& type, const std::string& keywords) {
-  return fmt::format(
-      "    {0}\n    {{\n        type            {0};\n        libs            $rheologyLibraries;\n{1}    "
-      "}}\n",
-      type, keywords);
-}
-
 /// Watches the velocity from step to step, and lets a slump's step grow.
 std::string staged_step(const Scene& scene) {
   constexpr double cells_per_second = 1e-3;
@@ -171,33 +164,21 @@ std::string staged_step(const Scene& scene) {
                                      scenes::foam_step_of_time, cells_per_second * scene.foam.cell));
 }
 
-/// The plate that createBafflesDict lays between the cells.
-std::string lifted_gate(const Gate& gate) {
-  return function_object(
-      "liftedGate", fmt::format("        walls           (gateBehind gateBefore);\n"
-                                "        openings        (openingBehind openingBefore);\n"
-                                "        velocity        {};  // m/s\n        edge            {};  // m\n",
-                                gate.velocity, gate.low[2]));
-}
-
 /// What is done to the concrete after every step, or read off it.
-std::string after_every_step(const Scene& scene, bool plug_in) {
+std::string after_every_step(const ApparatusCase& apparatus, bool plug_in) {
+  const Scene& scene = apparatus.scene();
   std::string text;
-  if (plug_in && writes_shear_rate(scene))
+  if (plug_in && writes_shear_rate(apparatus))
     text += function_object(
         "shearRate", fmt::format("        strainRate      {};\n", scenes::to_string(scene.foam.strain_rate)));
-  if (plug_in && scene.kind() == scenes::Kind::slump && scene.foam.air_rise_time.value_or(0.0) > 0.0)
-    text += function_object("airRises",
-                            fmt::format("        time            {};  // s\n", *scene.foam.air_rise_time));
-  if (const auto gate = gate_of(scene)) text += lifted_gate(*gate);
+  text += apparatus.function_objects(plug_in);
   if (plug_in) text += staged_step(scene);
   return fmt::format("afterEveryStep\n{{\n{}}}\n", text);
 }
 
 /// Correctors of the pressure. Concrete that slows under a surface chatters with fewer, whatever its step.
-int pressure_correctors(const Scene& scene, bool plug_in) {
-  const bool slows = scene.kind() != scenes::Kind::duct && scene.kind() != scenes::Kind::dam_break;
-  return plug_in && slows ? 12 : 6;
+int pressure_correctors(const ApparatusCase& apparatus, bool plug_in) {
+  return plug_in && apparatus.slows() ? 12 : 6;
 }
 
 std::string stress_model(const Scene& scene, bool plug_in) {
@@ -212,13 +193,14 @@ std::string stress_model(const Scene& scene, bool plug_in) {
 
 }  // namespace
 
-bool writes_shear_rate(const Scene& scene) {
-  return is_vessel(scene) || scene.base.law == scenes::Wall::friction;
+bool writes_shear_rate(const ApparatusCase& apparatus) {
+  return !apparatus.rates_follow_from_velocities() || apparatus.scene().base.law == scenes::Wall::friction;
 }
 
-std::string concrete_laws(const Scene& scene, bool plug_in) {
+std::string concrete_laws(const ApparatusCase& apparatus, bool plug_in) {
+  const Scene& scene = apparatus.scene();
   std::string sampled, state;
-  if (plug_in && writes_shear_rate(scene)) sampled += " shearRate";
+  if (plug_in && writes_shear_rate(apparatus)) sampled += " shearRate";
   if (plug_in && carries_flocculation(scene)) sampled += " flocculation";
   if (laws::can_rest(scene.material.model)) {
     sampled += " plasticShearRate";
@@ -233,7 +215,7 @@ std::string concrete_laws(const Scene& scene, bool plug_in) {
              "stateObjects        (alpha.concrete U p_rgh phi{}{});\n"
              "pressureCorrectors  {};\n{}\n",
              plug_in ? "\"$FOAM_CASE/libflowrestRheology.so\"" : "", sampled, sampled, state,
-             pressure_correctors(scene, plug_in), after_every_step(scene, plug_in)) +
+             pressure_correctors(apparatus, plug_in), after_every_step(apparatus, plug_in)) +
          stress_model(scene, plug_in);
 }
 

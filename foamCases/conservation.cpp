@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/pieces.h"
+
 namespace flowrest::foam {
 
 namespace {
@@ -20,8 +22,15 @@ double energy_of_the_fall(const scenes::Scene& scene, double volume) {
 
 }  // namespace
 
+double initial_volume(const scenes::Scene& scene) {
+  const auto pieces = scenes::pieces_of(scene);
+  double volume = 0.0;
+  for (const auto& body : pieces.bodies) volume += body.volume;
+  return pieces.whole_over_computed * volume;
+}
+
 Conservation::Conservation(const scenes::Scene& scene, double volume)
-    : may_leave_(scene.kind() == scenes::Kind::v_funnel),
+    : may_leave_(scenes::pieces_of(scene).runs_out),
       scene_volume_(volume),
       energy_bound_(energy_of_the_fall(scene, volume)) {}
 

@@ -46,4 +46,7 @@ class Conservation {
   double doubted_since_ = 0.0;  ///< s
 };
 
+/// Volume of the concrete at the start, of the whole body, m3; of a plane m3 to a metre.
+double initial_volume(const scenes::Scene&);
+
 }  // namespace flowrest::foam

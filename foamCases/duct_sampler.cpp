@@ -7,23 +7,23 @@
 #include <numeric>
 #include <utility>
 
-#include "foamCases/case_filler.h"
-
 namespace flowrest::foam {
 
-DuctSampler::DuctSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer, bool plug_in)
+DuctSampler::DuctSampler(const scenes::Scene& scene, std::size_t cells, CaseFields fields,
+                         runs::RunWriter& writer, bool plug_in)
     : Sampler(scene, std::move(fields), writer, plug_in),
       walls_(scenes::pieces_of(scene), 2),
-      height_(duct_cells(scene)) {
+      between_plates_(scene.body_height()),
+      height_(cells) {
   for (std::size_t i = 0; i < height_.size(); ++i)
-    height_[i] = (static_cast<double>(i) + 0.5) * scene.duct().height / static_cast<double>(height_.size());
+    height_[i] = (static_cast<double>(i) + 0.5) * between_plates_ / static_cast<double>(height_.size());
 }
 
 void DuctSampler::sample(double time, const ReadField& read) {
   const auto field = read("U", 3);
   std::vector<double> velocity(cells());
   for (std::size_t i = 0; i < cells(); ++i) velocity[i] = field[3 * i];
-  const double spacing = scene().duct().height / static_cast<double>(cells());
+  const double spacing = between_plates_ / static_cast<double>(cells());
   const auto state = thixotropic() ? flocculation(time, read) : std::vector<double>(cells(), 0.0);
   overstressing_rate_ = 0.0;
   // The rate over a distance, where the lesser flocculated of what it shears is this.

@@ -10,7 +10,8 @@ namespace flowrest::foam {
 /// Gauges a duct: the velocity profile of its one column of cells.
 class DuctSampler : public Sampler {
  public:
-  DuctSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
+  /// `cells`: from plate to plate.
+  DuctSampler(const scenes::Scene&, std::size_t cells, CaseFields, runs::RunWriter&, bool plug_in);
 
   std::size_t cells() const override { return height_.size(); }
   std::string progress() const override;
@@ -26,6 +27,7 @@ class DuctSampler : public Sampler {
   runs::ShearedLayer sheared_layer(const std::vector<double>& velocity, double spacing) const;
 
   runs::HeldWalls walls_;
+  double between_plates_;            ///< m
   std::vector<double> height_;       ///< m, of the cell centres over the lower plate
   double plug_velocity_ = 0.0;       ///< m/s, the mean of the innermost two cells
   double mean_velocity_ = 0.0;       ///< m/s

@@ -13,18 +13,15 @@
 #include <utility>
 #include <vector>
 
+#include "foamCases/apparatus/apparatus.h"
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
-#include "foamCases/duct_sampler.h"
 #include "foamCases/field_file.h"
 #include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/ranks.h"
 #include "foamCases/run_state.h"
-#include "foamCases/slump_sampler.h"
 #include "foamCases/solver_log.h"
-#include "foamCases/vessel_mesh.h"
-#include "foamCases/vessel_sampler.h"
 #include "runs/command.h"
 #include "runs/console.h"
 #include "runs/cores.h"
@@ -73,15 +70,11 @@ struct Programs {
   Call solve;
 };
 
-Programs needed_programs(const scenes::Scene& scene, int ranks) {
+Programs needed_programs(const ApparatusCase& apparatus, int ranks) {
   Programs programs;
   programs.prepare.push_back({openfoam_program("blockMesh"), {}});
-  if (scene.kind() == scenes::Kind::slump && scene.geometry.dimension != scenes::Dimension::quarter) {
-    programs.prepare.push_back({openfoam_program("setAlphaField"), {}});
-    programs.prepare.push_back({openfoam_program("setFields"), {}});
-  }
-  if (gate_of(scene)) programs.prepare.push_back({openfoam_program("createBaffles"), {"-overwrite"}});
-  if (is_vessel(scene)) programs.prepare.push_back({openfoam_program("setFields"), {}});
+  for (const Utility& utility : apparatus.utilities())
+    programs.prepare.push_back({openfoam_program(utility.program), utility.arguments});
   programs.solve = {openfoam_program("interFoam"), {}};
   if (ranks <= 1) return programs;
   programs.decompose = Call{openfoam_program("decomposePar"), {"-force", "-latestTime"}};
@@ -92,21 +85,6 @@ Programs needed_programs(const scenes::Scene& scene, int ranks) {
                      std::to_string(ranks), programs.solve.program.string(), "-parallel"},
                     true};
   return programs;
-}
-
-std::unique_ptr<Sampler> make_sampler(const scenes::Scene& scene, const CaseFields& fields,
-                                      runs::RunWriter& writer, bool plug_in) {
-  if (is_vessel(scene)) return std::make_unique<VesselSampler>(scene, fields, writer, plug_in);
-  if (scene.kind() == scenes::Kind::duct)
-    return std::make_unique<DuctSampler>(scene, fields, writer, plug_in);
-  return std::make_unique<SlumpSampler>(scene, fields, writer, plug_in);
-}
-
-/// Which of the scene's walls the case does not have, in words; empty where it has them all.
-std::string walls_differ(const scenes::Scene& scene) {
-  if (scene.kind() == scenes::Kind::slump && scene.slump().mould_lift_velocity)
-    return "no mould: the cone is released at once";
-  return "";
 }
 
 /// How the steps are bounded, in words.
@@ -149,6 +127,7 @@ class CaseRun {
   CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs, runs::RunWriter writer,
           const std::optional<RunState>& state = std::nullopt)
       : scene_(scene),
+        apparatus_(case_of(scene)),
         options_(options),
         programs_(std::move(programs)),
         state_(state),
@@ -241,7 +220,7 @@ class CaseRun {
 
   void begin() {
     if (!state_) fill_case(scene_, case_, plug_in_, ranks());
-    sampler_ = make_sampler(scene_, CaseFields(case_, ranks()), writer_, plug_in_.has_value());
+    sampler_ = apparatus_->sampler(CaseFields(case_, ranks()), writer_, plug_in_.has_value());
     if (state_) go_on();
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();
@@ -252,7 +231,7 @@ class CaseRun {
       info["ranks_note"] = note;
       progress_.note(note);
     }
-    if (const std::string differ = walls_differ(scene_); !differ.empty()) info["walls_differ"] = differ;
+    if (const std::string differ = apparatus_->walls_differ(); !differ.empty()) info["walls_differ"] = differ;
     writer_.write();
   }
 
@@ -512,6 +491,7 @@ class CaseRun {
   }
 
   const scenes::Scene& scene_;
+  std::unique_ptr<ApparatusCase> apparatus_;
   const RunOptions& options_;
   Programs programs_;
   std::optional<RunState> state_;
@@ -579,7 +559,7 @@ RunOutcome begin_run(const scenes::Scene& given, const RunOptions& options, Open
   const int ranks = options.ranks.value_or(1);
   check_supported(scene);
   check_ranks(scene, ranks, runs::cores());
-  const Programs programs = needed_programs(scene, ranks);
+  const Programs programs = needed_programs(*case_of(scene), ranks);
   runs::RunFolder folder = open(scene, Json{{"laws", plug_in ? "plug-in" : "built-in"}});
   if (folder.is_finished()) {
     if (!options.quiet) runs::say(stderr, folder.finished_words() + "\n");
@@ -606,7 +586,7 @@ RunOutcome resume_run(const RunOptions& given, const std::vector<std::string>& s
   options.ranks = given.ranks.value_or(earlier.ranks);
   check_ranks(earlier.scene, *options.ranks, runs::cores());
   plug_in_for(earlier.scene);
-  const Programs programs = needed_programs(earlier.scene, *options.ranks);
+  const Programs programs = needed_programs(*case_of(earlier.scene), *options.ranks);
   const fs::path case_directory = options.directory / "case";
   const auto latest = latest_whole_time(case_directory, earlier);
   if (!latest && !earlier.run.finished())

@@ -4,9 +4,10 @@
 
 #include <cstdlib>
 
-#include "foamCases/vessel_mesh.h"
+#include "foamCases/apparatus/apparatus.h"
 #include "runs/run_directory.h"
 #include "scenes/installation.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::foam {
 
@@ -19,7 +20,7 @@ namespace {
 constexpr const char* library = "libflowrestRheology.so";
 
 std::string law(const Scene& scene) {
-  return fmt::format("kind {}, model {}{}{}", scenes::to_string(scene.kind()),
+  return fmt::format("kind {}, model {}{}{}", scenes::name_of(scene.geometry.apparatus),
                      scenes::to_string(scene.material.model), scene.thixotropy ? " with [thixotropy]" : "",
                      scene.base.law == scenes::Wall::friction ? " on walls with friction" : "");
 }
@@ -41,11 +42,7 @@ std::optional<fs::path> find_plug_in() {
 std::string openfoam_of_plug_in() { return FLOWREST_OPENFOAM_VERSION; }
 
 Scene settled(Scene scene, bool plug_in) {
-  constexpr int rows = 4;
-  constexpr double rise_time = 0.1;  // s
-  if (scene.kind() != scenes::Kind::slump) return scene;
-  if (scene.foam.base_rows == 0) scene.foam.base_rows = plug_in ? rows : 1;
-  if (!scene.foam.air_rise_time) scene.foam.air_rise_time = plug_in ? rise_time : 0.0;
+  case_of(scene)->settle(scene.foam, plug_in);
   return scene;
 }
 
@@ -55,9 +52,8 @@ bool carries_flocculation(const Scene& scene) {
 
 bool needs_plug_in(const Scene& scene) {
   // What is mended where cells lean is mended by the plug-in.
-  const bool leans = scene.kind() == scenes::Kind::l_box || scene.kind() == scenes::Kind::v_funnel;
-  return leans || scene.base.law == scenes::Wall::friction || laws::can_rest(scene.material.model) ||
-         carries_flocculation(scene);
+  return case_of(scene)->leans() || scene.base.law == scenes::Wall::friction ||
+         laws::can_rest(scene.material.model) || carries_flocculation(scene);
 }
 
 std::optional<fs::path> plug_in_for(const Scene& scene) {
@@ -69,7 +65,7 @@ std::optional<fs::path> plug_in_for(const Scene& scene) {
         scene.path.string(), law(scene)));
   }
   // Without a surface one viscosity is one viscosity.
-  if (!laws::has_yield_stress(scene.material.model) && scene.kind() == scenes::Kind::duct && !needed)
+  if (!laws::has_yield_stress(scene.material.model) && !scenes::pieces_of(scene).free_surface && !needed)
     return std::nullopt;
   const auto found = find_plug_in();
   if (!found && needed)

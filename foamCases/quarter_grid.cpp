@@ -8,6 +8,7 @@
 #include "foamCases/concrete_rates.h"
 #include "runs/depth.h"
 #include "runs/quantile.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::foam {
 
@@ -105,11 +106,11 @@ double front(const QuarterGrid& grid, const std::vector<double>& fraction) {
 }  // namespace
 
 QuarterGrid quarter_grid(const scenes::Scene& scene) {
-  const double along = scene.slump().domain_radius / scene.foam.cell;
+  const double along = scenes::pieces_of(scene).domain->radius / scene.foam.cell;
   QuarterGrid grid;
   static_cast<SlumpRows&>(grid) = slump_rows(scene, along * along);
   grid.side = cells_along_radius(scene);
-  grid.width = scene.slump().domain_radius / grid.side;
+  grid.width = scenes::pieces_of(scene).domain->radius / grid.side;
   return grid;
 }
 
@@ -124,36 +125,6 @@ double disc_in_rectangle(double radius, double x, double y) {
     return 0.5 * (u * std::sqrt(std::max(0.0, r2 - u * u)) + r2 * std::asin(std::min(1.0, u / radius)));
   };
   return flat * y + under_arc(wide) - under_arc(flat);
-}
-
-std::vector<double> cone_fraction(const scenes::Scene& scene, const QuarterGrid& grid) {
-  // Gauss' rule with eight points resolves where the circle passes a cell's corner.
-  static constexpr std::array<std::pair<double, double>, 4> rule{{{0.1834346424956498, 0.3626837833783620},
-                                                                  {0.5255324099163290, 0.3137066458778873},
-                                                                  {0.7966664774136267, 0.2223810344533745},
-                                                                  {0.9602898564975363, 0.1012285362903763}}};
-  const auto& cone = scene.slump();
-  std::vector<double> fraction(grid.cells(), 0.0);
-  double below = 0.0;
-  for (int row = 0; row < grid.base_rows + grid.cone_rows; ++row) {
-    const double height = grid.row_height(row);
-    for (const auto& [point, weight] : rule)
-      for (const double sign : {-1.0, 1.0}) {
-        const double z = below + 0.5 * height * (1.0 + sign * point);
-        const double radius = std::lerp(cone.cone_radius_bottom, cone.cone_radius_top, z / cone.cone_height);
-        for (int j = 0; j < grid.side; ++j)
-          for (int i = 0; i < grid.side; ++i) {
-            const auto corner = [&](int di, int dj) {
-              return disc_in_rectangle(radius, (i + di) * grid.width, (j + dj) * grid.width);
-            };
-            const double area = corner(1, 1) - corner(0, 1) - corner(1, 0) + corner(0, 0);
-            fraction[grid.index(i, j, row)] += 0.5 * weight * std::max(0.0, area) / (grid.width * grid.width);
-          }
-      }
-    below += height;
-  }
-  for (double& f : fraction) f = f < 1e-12 ? 0.0 : f > 1.0 - 1e-12 ? 1.0 : f;
-  return fraction;
 }
 
 std::vector<double> shear_rate(const QuarterGrid& grid, const std::vector<double>& velocity, bool slip) {

@@ -32,10 +32,6 @@ QuarterGrid quarter_grid(const scenes::Scene& scene);
 /// Area of a disc about the origin within the rectangle from (0, 0) to (x, y), m2.
 double disc_in_rectangle(double radius, double x, double y);
 
-/// The fraction of every cell that the cone fills. Areas are exact at each height and the cone's section is a
-/// polynomial of second degree in it, so the sum over a row is its volume to round-off.
-std::vector<double> cone_fraction(const scenes::Scene& scene, const QuarterGrid& grid);
-
 /// As gauge_slump of a wedge. Depth counts by rings as wide as a cell; the front is that along x.
 SlumpGauges gauge_slump(const QuarterGrid&, const SlumpFields&, double density, bool slip);
 

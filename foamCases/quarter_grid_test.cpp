@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "foamCases/apparatus/slump.h"
 #include "foamCases/test_scene.h"
 #include "runs/depth.h"
 
@@ -40,7 +41,7 @@ TEST(QuarterGrid, TheConesVolumeIsExactOnAnyGrid) {
   for (const char* cell : {"0.03", "0.023", "0.01"}) {
     const auto scene = quarter(cell);
     const auto grid = quarter_grid(scene);
-    const auto fraction = cone_fraction(scene, grid);
+    const auto fraction = cone_fraction(scene.slump(), grid);
     double volume = 0.0;
     for (int row = 0; row < grid.rows(); ++row)
       for (int j = 0; j < grid.side; ++j)

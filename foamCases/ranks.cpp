@@ -3,13 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
-#include "foamCases/case_filler.h"
-#include "foamCases/quarter_grid.h"
-#include "foamCases/vessel_mesh.h"
-#include "foamCases/wedge_grid.h"
+#include "foamCases/apparatus/apparatus.h"
 
 namespace flowrest::foam {
 
@@ -19,13 +14,6 @@ namespace {
 /// it.
 constexpr std::size_t fewest_cells = 10, repaying_cells = 2000;
 
-/// Different places of cells along an axis, to a micrometre.
-std::size_t slices_of(const BlockLattice& mesh, std::size_t axis) {
-  std::set<long> places;
-  for (const MeshCell& cell : mesh_cells(mesh)) places.insert(std::lround(1e6 * cell.centre()[axis]));
-  return places.size();
-}
-
 std::string sensible(const Divisible& mesh, int cores) {
   return fmt::format("sensible: {} (some {} cells to a rank, at most {} slices of cells and {} core{})",
                      sensible_ranks(mesh, cores), repaying_cells, mesh.slices, cores, cores == 1 ? "" : "s");
@@ -34,15 +22,8 @@ std::string sensible(const Divisible& mesh, int cores) {
 }  // namespace
 
 Divisible divisible(const scenes::Scene& scene) {
-  if (scene.kind() == scenes::Kind::duct) return {duct_cells(scene), 1};
-  if (is_vessel(scene)) {
-    // As the cases' decomposeParDict have it: a funnel's slices lie one over another.
-    const std::size_t axis = scene.kind() == scenes::Kind::v_funnel ? 2 : 0;
-    return {mesh_cells(scene), slices_of(vessel_mesh(scene), axis)};
-  }
-  const bool quarter = scene.geometry.dimension == scenes::Dimension::quarter;
-  return {mesh_cells(scene),
-          static_cast<std::size_t>(quarter ? quarter_grid(scene).side : wedge_grid(scene).rings)};
+  const auto apparatus = case_of(scene);
+  return {apparatus->cells(), apparatus->slices()};
 }
 
 int sensible_ranks(const Divisible& mesh, int cores) {
@@ -53,10 +34,11 @@ int sensible_ranks(const Divisible& mesh, int cores) {
 
 void check_ranks(const scenes::Scene& scene, int ranks, int cores) {
   if (ranks <= 1) return;
-  if (scene.kind() == scenes::Kind::duct)
-    throw scenes::SceneError(
-        fmt::format("{}: --ranks {}: a duct is one column of cells; allowed: 1", scene.path.string(), ranks));
   const Divisible mesh = divisible(scene);
+  if (mesh.slices == 1)
+    throw scenes::SceneError(fmt::format("{}: --ranks {}: a {} is one column of cells; allowed: 1",
+                                         scene.path.string(), ranks,
+                                         scenes::name_of(scene.geometry.apparatus)));
   const std::size_t most = std::max<std::size_t>(mesh.cells / fewest_cells, 1);
   if (static_cast<std::size_t>(ranks) > most)
     throw scenes::SceneError(

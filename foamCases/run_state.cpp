@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "foamCases/apparatus/apparatus.h"
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
 #include "foamCases/field_file.h"
@@ -49,8 +50,9 @@ std::vector<std::pair<std::string, int>> state_fields(const scenes::Scene& scene
 bool is_whole(const CaseFields& fields, const std::string& time, const scenes::Scene& scene, bool plug_in) {
   if (!fields.holds(time, "phi") || !fields.holds(time, "uniform/time")) return false;
   try {
+    const std::size_t cells = case_of(scene)->cells();
     for (const auto& [name, components] : state_fields(scene, plug_in))
-      fields.read(time, name, mesh_cells(scene), components);
+      fields.read(time, name, cells, components);
   } catch (const FieldError&) {
     return false;
   }

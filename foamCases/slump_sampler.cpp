@@ -5,21 +5,22 @@
 #include <algorithm>
 #include <utility>
 
-#include "foamCases/concrete_laws.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
+#include "scenes/pieces.h"
 
 namespace flowrest::foam {
 
 SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
-                           bool plug_in)
+                           bool plug_in, bool shear_rates)
     : Sampler(scene, std::move(fields), writer, plug_in),
       mesh_(slump_mesh(scene)),
-      conservation_(scene, scene.slump().volume()) {}
+      conservation_(scene, initial_volume(scene)),
+      shear_rates_(shear_rates) {}
 
 void SlumpSampler::sample(double time, const ReadField& read) {
   SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
-  if (plug_in() && time > 0.0 && writes_shear_rate(scene())) fields.shear_rate = read("shearRate", 1);
+  if (shear_rates_ && time > 0.0) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) {
     fields.flocculation = flocculation(time, read);
     state_.flocculation = mesh_->mean_over_concrete(fields.fraction, fields.flocculation);
@@ -67,7 +68,7 @@ std::string SlumpSampler::fault() const {
     return fmt::format(
         "the concrete reached the rim of the mesh at {:.4g} s: geometry.domain_radius = {:g} m must be "
         "larger",
-        state_.time, scene().slump().domain_radius);
+        state_.time, scenes::pieces_of(scene()).domain->radius);
   return conservation_.fault();
 }
 

@@ -24,7 +24,8 @@ struct SlumpState {
 /// Gauges a slump, in a wedge or a quarter.
 class SlumpSampler : public Sampler {
  public:
-  SlumpSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
+  /// `shear_rates`: whether the case writes them.
+  SlumpSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in, bool shear_rates);
 
   std::size_t cells() const override { return mesh_->cells(); }
   std::string progress() const override;
@@ -40,6 +41,7 @@ class SlumpSampler : public Sampler {
 
   std::unique_ptr<SlumpMesh> mesh_;
   Conservation conservation_;
+  bool shear_rates_;
   SlumpState state_;
 };
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "foamCases/concrete_rates.h"
-#include "foamCases/vessel_mesh.h"
+#include "foamCases/vessel.h"
 #include "runs/depth.h"
 #include "runs/quantile.h"
 
@@ -55,11 +55,11 @@ double quantile(const Bins& bins, double share) {
 
 }  // namespace
 
-VesselGauge::VesselGauge(const scenes::Scene& scene)
+VesselGauge::VesselGauge(const scenes::Scene& scene, std::vector<MeshCell> cells)
     : scene_(scene),
       pieces_(scenes::pieces_of(scene)),
       walls_(pieces_, scene.spatial_dimension()),
-      cells_(mesh_cells(vessel_mesh(scene))),
+      cells_(std::move(cells)),
       factor_(whole_over_mesh(scene)) {}
 
 bool VesselGauge::floor_holds() const { return scene_.base.law != scenes::Wall::slip && !pieces_.runs_out; }

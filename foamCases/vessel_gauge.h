@@ -44,7 +44,7 @@ struct VesselGauges {
 /// Gauges one vessel's fields, time after time.
 class VesselGauge {
  public:
-  explicit VesselGauge(const scenes::Scene&);
+  VesselGauge(const scenes::Scene&, std::vector<MeshCell>);
 
   std::size_t cells() const { return cells_.size(); }
   VesselGauges measure(const VesselFields&) const;

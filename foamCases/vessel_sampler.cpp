@@ -5,15 +5,16 @@
 #include <cmath>
 #include <utility>
 
-#include "foamCases/vessel_mesh.h"
+#include "foamCases/vessel.h"
 #include "runs/gauges.h"
 
 namespace flowrest::foam {
 
-VesselSampler::VesselSampler(const scenes::Scene& scene, CaseFields fields, runs::RunWriter& writer,
-                             bool plug_in)
+VesselSampler::VesselSampler(const scenes::Scene& scene, std::vector<MeshCell> cells, CaseFields fields,
+                             runs::RunWriter& writer, bool plug_in)
     : Sampler(scene, std::move(fields), writer, plug_in),
-      gauge_(scene),
+      runs_out_(scenes::pieces_of(scene).runs_out),
+      gauge_(scene, std::move(cells)),
       conservation_(scene, initial_volume(scene)) {}
 
 void VesselSampler::sample(double time, const ReadField& read) {
@@ -35,7 +36,7 @@ void VesselSampler::write_history(double time) {
   using namespace runs::column;
   runs::Row row;
   row.add(runs::column::time, time);
-  if (is_funnel()) {
+  if (runs_out_) {
     row.add(runs::column::discharged, discharged()).add(thinnest_sight, now_.thinnest_over_outlet);
   } else {
     row.add(front, now_.front)
@@ -56,15 +57,15 @@ void VesselSampler::write_history(double time) {
 }
 
 std::string VesselSampler::progress() const {
-  return is_funnel() ? fmt::format("discharged {:.1f} %", 100.0 * discharged())
-                     : runs::shown_length("front", now_.front, scene().gauges.front_depth);
+  return runs_out_ ? fmt::format("discharged {:.1f} %", 100.0 * discharged())
+                   : runs::shown_length("front", now_.front, scene().gauges.front_depth);
 }
 
 void VesselSampler::continue_from(const runs::Table& history) {
   Sampler::continue_from(history);
   if (history.rows() == 0) return;
   conservation_.continue_from(history);
-  if (is_funnel()) {
+  if (runs_out_) {
     now_.over_outlet = conservation_.first_volume() * (1.0 - history.at("discharged_fraction").back());
     now_.thinnest_over_outlet = 1e-3 * history.at("thinnest_sight_mm").back();
   } else {
@@ -76,7 +77,7 @@ void VesselSampler::continue_from(const runs::Table& history) {
 
 nlohmann::ordered_json VesselSampler::summary() const {
   nlohmann::ordered_json gauges;
-  if (is_funnel()) {
+  if (runs_out_) {
     gauges = {{"discharged_fraction", discharged()}, {"thinnest_sight_mm", 1e3 * now_.thinnest_over_outlet}};
   } else {
     gauges = {{"front_mm", 1e3 * now_.front},

@@ -6,11 +6,11 @@
 
 namespace flowrest::foam {
 
-/// Gauges an L-box, a V-funnel or a dam break.
+/// Gauges what runs out of a vessel, or along one.
 class VesselSampler : public Sampler {
  public:
   /// `shear_rates`: whether the case writes them, as it does with the plug-in.
-  VesselSampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
+  VesselSampler(const scenes::Scene&, std::vector<MeshCell>, CaseFields, runs::RunWriter&, bool plug_in);
 
   std::size_t cells() const override { return gauge_.cells(); }
   std::string progress() const override;
@@ -20,12 +20,12 @@ class VesselSampler : public Sampler {
   nlohmann::ordered_json summary() const override;
 
  private:
-  bool is_funnel() const { return scene().kind() == scenes::Kind::v_funnel; }
   void sample(double time, const ReadField&) override;
   double overstressing_rate() const override { return now_.overstressing_rate_p99; }
   void write_history(double time);
   double discharged() const;  ///< share of the concrete
 
+  bool runs_out_;  ///< of an outlet, or else along a channel
   VesselGauge gauge_;
   VesselGauges now_;
   Conservation conservation_;

@@ -1,10 +1,12 @@
+#include "foamCases/vessel.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "foamCases/conservation.h"
 #include "foamCases/vessel_gauge.h"
-#include "foamCases/vessel_mesh.h"
 #include "scenes/cost.h"
 #include "scenes/scene.h"
 
@@ -15,6 +17,11 @@ using ::testing::HasSubstr;
 
 scenes::Scene scene_of(const std::string& name, std::vector<std::string> set = {}) {
   return scenes::load_scene(name, {std::move(set), std::nullopt});
+}
+
+/// The blocks of a scene's vessel.
+BlockLattice vessel_mesh(const scenes::Scene& scene) {
+  return dynamic_cast<const Vessel&>(*case_of(scene)).mesh();
 }
 
 /// A block of two by one by three cells, one corner pulled out.
@@ -59,7 +66,7 @@ TEST(Cost, CountsAVesselsCellsToAFifth) {
 }
 
 double volume_where(const scenes::Scene& scene, bool filled) {
-  const auto [low, high] = initial_box(scene);
+  const auto [low, high] = dynamic_cast<const Vessel&>(*case_of(scene)).initial_box();
   double volume = 0.0;
   for (const auto& cell : mesh_cells(vessel_mesh(scene))) {
     const Point c = cell.centre();
@@ -141,8 +148,8 @@ TEST(VesselMesh, SaysWhatIsAllowed) {
 /// A wedge of concrete that runs out along the channel, moving.
 TEST(VesselGauge, SeesAWedgeInTheChannel) {
   const auto scene = scene_of("mix-a-lbox-sf0", {"foam.cell=0.01", "geometry.rebars=0"});
-  const VesselGauge gauge(scene);
   const auto cells = mesh_cells(vessel_mesh(scene));
+  const VesselGauge gauge(scene, cells);
   VesselFields fields;
   const double height = 0.06, end = 0.5;  // m, falling linearly from the back wall
   for (const auto& cell : cells) {
@@ -170,8 +177,8 @@ TEST(VesselGauge, SeesAWedgeInTheChannel) {
 TEST(VesselGauge, ReadsTheFrontAndTheHeightsAsTheSceneDefinesThem) {
   const auto scene = scene_of("mix-a-lbox-sf0", {"foam.cell=0.01", "geometry.rebars=0",
                                                  "gauges.front_depth=0.012", "gauges.end_length=0.1"});
-  const VesselGauge gauge(scene);
   const auto cells = mesh_cells(vessel_mesh(scene));
+  const VesselGauge gauge(scene, cells);
   VesselFields fields, air;
   const double height = 0.06, end = 0.5;  // m, falling linearly from the back wall
   for (const auto& cell : cells) {
@@ -193,8 +200,8 @@ TEST(VesselGauge, ReadsTheFrontAndTheHeightsAsTheSceneDefinesThem) {
 
 TEST(VesselGauge, SeesWhatIsLeftInAFunnel) {
   const auto scene = scene_of("mix-a-vfunnel-sf0", {"foam.cell=0.01"});
-  const VesselGauge gauge(scene);
   const auto cells = mesh_cells(vessel_mesh(scene));
+  const VesselGauge gauge(scene, cells);
   const auto& g = scene.v_funnel();
   VesselFields fields;
   // Full up to the neck's top but for a hole along the middle: half of the width's cells.

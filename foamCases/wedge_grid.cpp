@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "scenes/pieces.h"
+
 namespace flowrest::foam {
 
 double WedgeGrid::ring_area(int ring) const {
@@ -10,9 +12,10 @@ double WedgeGrid::ring_area(int ring) const {
 
 WedgeGrid wedge_grid(const scenes::Scene& scene) {
   WedgeGrid grid;
-  static_cast<SlumpRows&>(grid) = slump_rows(scene, scene.slump().domain_radius / scene.foam.cell);
+  static_cast<SlumpRows&>(grid) =
+      slump_rows(scene, scenes::pieces_of(scene).domain->radius / scene.foam.cell);
   grid.rings = cells_along_radius(scene);
-  grid.ring_width = scene.slump().domain_radius / grid.rings;
+  grid.ring_width = scenes::pieces_of(scene).domain->radius / grid.rings;
   return grid;
 }
 

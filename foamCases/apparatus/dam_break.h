@@ -1,0 +1,9 @@
+#pragma once
+
+#include "foamCases/apparatus/apparatus.h"
+
+namespace flowrest::foam {
+
+std::unique_ptr<ApparatusCase> case_of(const scenes::DamBreak&, const scenes::Scene&);
+
+}  // namespace flowrest::foam
