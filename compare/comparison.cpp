@@ -6,12 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/run_measures.h"
 #include "compare/pairs.h"
 #include "compare/run_view.h"
 #include "compare/square.h"
 #include "runs/gauges.h"
-#include "scenes/names.h"
 #include "scenes/text.h"
 
 namespace flowrest::compare {
@@ -34,7 +34,7 @@ std::vector<double> common_grid(const Comparison& comparison) {
   }
   std::vector<double> grid;
   if (!(extent > 0.0)) return grid;
-  if (comparison.kind == scenes::Kind::duct) {
+  if (!comparison.apparatus->has_depth()) {
     constexpr int half = points / 2;
     for (int i = -half; i <= half; ++i) grid.push_back(extent * i / half);
   } else {
@@ -64,17 +64,17 @@ std::vector<double> pair_times(double end, double unit) {
   return times;
 }
 
-/// The one kind of scene that all the runs are of.
-scenes::Kind common_kind(const std::vector<runs::Run>& runs) {
+/// The one apparatus that all the runs are of.
+const ApparatusReport& common_apparatus(const std::vector<runs::Run>& runs) {
   const auto kind_of = [](const runs::Run& run) { return run.info["kind"].get<std::string>(); };
   const std::string kind = kind_of(runs.front());
   for (const runs::Run& run : runs)
     if (kind_of(run) != kind)
       throw RunError(fmt::format("{}: a {} cannot be compared with a {} ({})", run.directory.string(),
                                  kind_of(run), kind, runs.front().directory.string()));
-  if (const auto known = scenes::choice_named<scenes::Kind>(kind)) return *known;
+  if (const auto* known = scenes::apparatus_named(kind)) return report_of(*known);
   throw RunError(fmt::format("{}: kind '{}' is unknown; allowed: {}", runs.front().directory.string(), kind,
-                             scenes::joined(scenes::all_names<scenes::Kind>())));
+                             scenes::joined(scenes::apparatus_names())));
 }
 
 /// MPM before OpenFOAM before others, exact solutions last; within a solver the law that stops first; else as
@@ -169,15 +169,15 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   for (const fs::path& directory : directories) read.push_back(runs::read_run(directory));
 
   Comparison comparison;
-  comparison.kind = common_kind(read);
+  comparison.apparatus = &common_apparatus(read);
   comparison.gauges = runs::gauges_of(read.front());
   comparison.thresholds = thresholds_of(comparison.gauges, options);
-  comparison.grain = words::grain_of(comparison.gauges, comparison.kind);
-  for (runs::Run& run : read) comparison.runs.push_back(view_of(std::move(run), comparison.kind));
+  comparison.grain = words::grain_of(comparison.gauges, comparison.apparatus->judged_by());
+  for (runs::Run& run : read) comparison.runs.push_back(view_of(std::move(run), *comparison.apparatus));
   make_labels_unique(comparison.runs);
   sort_runs(comparison.runs);
   comparison.title = comparison.runs.front().run.info["title"];
-  comparison.radial = comparison.kind == scenes::Kind::slump &&
+  comparison.radial = comparison.apparatus->spreads() &&
                       word(comparison.runs.front().run.info, "/settings/geometry/dimension") != "plane";
   check_same_scene(comparison);
   note_gauges(comparison);
@@ -192,7 +192,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   comparison.stops = stop_times(comparison.thresholds, comparison.end);
 
   for (RunView& view : comparison.runs) measure(view, comparison);
-  measure_approach(comparison);
+  comparison.apparatus->measure_approach(comparison);
   measure_overshoot(comparison);
   measure_uncertainty(comparison);
   compare_pairs(comparison);

@@ -16,6 +16,8 @@
 /// in words.
 namespace flowrest::compare {
 
+class ApparatusReport;
+
 /// What a caller asks the measures to be taken by; what is empty follows from the runs' [gauges].
 struct Options {
   std::optional<double>
@@ -88,11 +90,12 @@ struct Measures {
   std::optional<double> volume_drift;               ///< (last - first)/first
   std::optional<double> mass_drift;
   std::optional<double> cpu, wall, cpu_per_simulated_second;  ///< s
-  std::map<std::string, ReadValue> readings;                  ///< readings_of(kind), by their quantity
+  std::map<std::string, ReadValue> readings;                  ///< its readings, by their quantity
 };
 
 /// A run under comparison.
 struct RunView {
+  const ApparatusReport* apparatus = nullptr;
   runs::Run run;
   std::string label;  ///< unique
   std::string solver, model;
@@ -105,8 +108,8 @@ struct RunView {
   scenes::Gauges gauges;     ///< what its gauges are defined by
   bool unread = false;       ///< its last row has nothing to read of the gauge
   std::string walls_differ;  ///< where its walls are not those of the scene, in words; empty where they are
-  Series gauge;       ///< gauge_of(kind), SI: spread or front (m), plug velocity (m/s), discharged fraction
-  Series shear_rate;  ///< 99th percentile, 1/s
+  Series gauge;              ///< SI: spread or front (m), plug velocity (m/s), discharged fraction
+  Series shear_rate;         ///< 99th percentile, 1/s
   Measures measures;
 
   /// The profile on `grid` at a time, linear between the recorded ones; none where the run has nothing to
@@ -162,8 +165,8 @@ struct Comparison {
   scenes::Gauges gauges;  ///< what the gauges of the first run are defined by
   words::Grain grain;     ///< the least that is told of lengths, speeds and times
   std::string title;
-  scenes::Kind kind = scenes::Kind::slump;
-  bool radial = true;  ///< profiles are against a radius
+  const ApparatusReport* apparatus = nullptr;  ///< of all the runs
+  bool radial = true;                          ///< profiles are against a radius
   std::vector<RunView> runs;
   std::vector<Pair> pairs;
   std::optional<Square> square;  ///< where at least two of its corners on one side are among the runs
@@ -184,7 +187,7 @@ struct Comparison {
 /// @throws runs::RunError where there is none.
 std::vector<std::filesystem::path> find_runs(const std::vector<std::filesystem::path>&);
 
-/// @throws runs::RunError where a run cannot be read or the runs are of different kinds of scene.
+/// @throws runs::RunError where a run cannot be read or the runs are of different apparatus.
 Comparison compare_runs(const std::vector<std::filesystem::path>&, const Options& = {});
 
 /// The words: findings and fair, from everything else.

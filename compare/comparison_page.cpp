@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/fields/section.h"
 #include "compare/measures/gauges.h"
+#include "compare/run_table.h"
 #include "compare/run_view.h"
 #include "compare/words.h"
 
@@ -32,29 +33,16 @@ namespace {
 /// Samples of a history in the page: dense early, where most happens, and few enough to draw at once.
 constexpr int history_samples = 500;
 
-bool is_slump(const Comparison& comparison) { return comparison.kind == scenes::Kind::slump; }
-bool is_duct(const Comparison& comparison) { return comparison.kind == scenes::Kind::duct; }
-double scale_of(const Comparison& comparison) { return gauge_of(comparison.kind).shown; }
-std::string unit_of(const Comparison& comparison) { return gauge_of(comparison.kind).unit; }
-std::string gauge_name(const Comparison& comparison) { return gauge_of(comparison.kind).name; }
-std::string speed_unit(const Comparison& comparison) { return is_duct(comparison) ? "m/s" : "mm/s"; }
+const Gauge& gauge_of(const Comparison& comparison) { return comparison.apparatus->gauge(); }
+double scale_of(const Comparison& comparison) { return gauge_of(comparison).shown; }
+std::string unit_of(const Comparison& comparison) { return gauge_of(comparison).unit; }
+std::string gauge_name(const Comparison& comparison) { return gauge_of(comparison).name; }
+std::string speed_unit(const Comparison& comparison) {
+  return comparison.apparatus->has_depth() ? "mm/s" : "m/s";
+}
 std::string capitalised(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
-}
-
-constexpr Format fixed(int digits) { return {Format::Kind::fixed, digits}; }
-constexpr Format signed_fixed(int digits) { return {Format::Kind::signed_fixed, digits}; }
-constexpr Format significant(int digits) { return {Format::Kind::significant, digits}; }
-/// Lengths in mm as far as they are told, and `more` digits.
-Format lengths(const Comparison& comparison, int more = 0) {
-  return fixed(comparison.grain.decimals() + more);
-}
-Format signed_lengths(const Comparison& comparison) { return signed_fixed(comparison.grain.decimals()); }
-/// Times with so many digits of the standard apparatus, more of what is over sooner.
-Format times(const Comparison& comparison, int digits) {
-  return fixed(digits +
-               std::max(0, static_cast<int>(std::ceil(-std::log10(comparison.thresholds.time_unit)))));
 }
 
 /// Runs that agree in solver and law are told apart by further dashes.
@@ -88,8 +76,7 @@ Axis time_axis(const Comparison& comparison) {
 }
 
 Plot gauge_plot(const Comparison& comparison) {
-  const bool slump = is_slump(comparison);
-  Plot plot{gauge_of(comparison.kind).key,
+  Plot plot{gauge_of(comparison).key,
             gauge_name(comparison) + " against time",
             "",
             time_axis(comparison),
@@ -97,7 +84,7 @@ Plot gauge_plot(const Comparison& comparison) {
             {},
             true,
             std::nullopt};
-  plot.caption = gauge_of(comparison.kind).caption_for(comparison.gauges, comparison.kind);
+  plot.caption = gauge_of(comparison).caption_for(comparison.gauges, comparison.apparatus->judged_by());
   double lowest_end = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const RunView& view = comparison.runs[i];
@@ -112,7 +99,7 @@ Plot gauge_plot(const Comparison& comparison) {
     plot.curves.push_back(std::move(curve));
   }
   // A slump's whole rise hides what matters: how its runs part at the end.
-  if (slump && std::isfinite(lowest_end)) {
+  if (comparison.apparatus->spreads() && std::isfinite(lowest_end)) {
     const double step = 1e4 * comparison.grain.length;  // mm: of the standard cone 10
     plot.focus = step * std::floor(0.9 * lowest_end / step);
   }
@@ -122,10 +109,10 @@ Plot gauge_plot(const Comparison& comparison) {
 /// What else each run recorded, against time.
 Chapter further_chapter(const Comparison& comparison) {
   Chapter chapter{"gauges", "What else was gauged", {}};
-  for (const Gauge& gauge : further_gauges(comparison.kind)) {
+  for (const Gauge& gauge : comparison.apparatus->further_gauges()) {
     Plot plot{.id = gauge.key,
               .title = gauge.name + " against time",
-              .caption = gauge.caption_for(comparison.gauges, comparison.kind)};
+              .caption = gauge.caption_for(comparison.gauges, comparison.apparatus->judged_by())};
     plot.x = time_axis(comparison);
     plot.y = {gauge.name, gauge.unit, false, true};
     for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
@@ -154,18 +141,21 @@ Chapter further_chapter(const Comparison& comparison) {
 }
 
 std::optional<Block> profiles(const Comparison& comparison) {
-  const bool slump = !is_duct(comparison);
-  report::Frames frames{"profiles", slump ? "depth profiles" : "velocity profiles"};
+  const bool depth_profiles = comparison.apparatus->has_depth();
+  report::Frames frames{"profiles", depth_profiles ? "depth profiles" : "velocity profiles"};
   frames.caption =
-      slump ? "Depth: concrete volume per plan area, for every solver. Vertical scale exaggerated. Drag, use "
-              "the arrow keys, or press play."
-            : "Drag, use the arrow keys, or press play.";
+      depth_profiles
+          ? "Depth: concrete volume per plan area, for every solver. Vertical scale exaggerated. Drag, use "
+            "the arrow keys, or press play."
+          : "Drag, use the arrow keys, or press play.";
   frames.times = comparison.frames;
-  frames.grid = {slump ? (comparison.radial ? "radius" : "distance") : "height above the mid-plane", "mm"};
-  frames.value = {slump ? "depth" : "velocity", slump ? "mm" : "m/s", false, false, 0.0, std::nullopt};
-  if (!slump) frames.value.from = std::nullopt;
+  frames.grid = {depth_profiles ? (comparison.radial ? "radius" : "distance") : "height above the mid-plane",
+                 "mm"};
+  frames.value = {
+      depth_profiles ? "depth" : "velocity", depth_profiles ? "mm" : "m/s", false, false, 0.0, std::nullopt};
+  if (!depth_profiles) frames.value.from = std::nullopt;
   for (const double x : comparison.grid) frames.coordinate.push_back(1e3 * x);
-  frames.upright = !slump;
+  frames.upright = !depth_profiles;
   bool any = false;
   // A hundredth of what is told of lengths is more than a screen shows.
   const double per_mm = 0.1 / comparison.grain.length;
@@ -173,7 +163,7 @@ std::optional<Block> profiles(const Comparison& comparison) {
     report::Frames::Curve curve{static_cast<int>(i), {}};
     for (const double t : comparison.frames) {
       auto values = comparison.runs[i].profile(t, comparison.grid).value_or(std::vector<double>());
-      for (double& v : values) v = slump ? std::round(1e3 * v * per_mm) / per_mm : v;
+      for (double& v : values) v = depth_profiles ? std::round(1e3 * v * per_mm) / per_mm : v;
       any = any || !values.empty();
       curve.values.push_back(std::move(values));
     }
@@ -181,21 +171,6 @@ std::optional<Block> profiles(const Comparison& comparison) {
   }
   if (!any || frames.times.empty() || frames.coordinate.empty()) return std::nullopt;
   return frames;
-}
-
-/// A column of a table of runs.
-struct RunColumn {
-  Column column;
-  std::function<Table::Cell(const RunView&)> value;
-};
-
-Table::Cell cell(const std::optional<double>& value, double scale = 1.0) {
-  return value ? Table::Cell(scale * *value) : Table::Cell();
-}
-
-RunColumn measure_column(const std::string& name, const std::string& unit, Format format,
-                         std::optional<double> Measures::*member, double scale = 1.0) {
-  return {{name, unit, format}, [=](const RunView& view) { return cell(view.measures.*member, scale); }};
 }
 
 Table table_of_runs(const Comparison& comparison, const std::string& id, const std::string& title,
@@ -220,98 +195,13 @@ Table::Cell verdict(const RunView& view) {
   return view.trouble.empty() ? said : view.trouble + (said.empty() ? "" : "; " + said);
 }
 
-std::string measures_caption(const Comparison& comparison) {
-  const Thresholds& o = comparison.thresholds;
-  if (comparison.kind == scenes::Kind::v_funnel)
-    return fmt::format(
-        "Light is seen once some line of sight through the outlet holds less than {:g} mm of material. ± is "
-        "the difference to another grid, taken on to zero cell size at first order. A dash: not measured, or "
-        "never.",
-        1e3 * comparison.gauges.light_depth);
-  if (is_duct(comparison))
-    return fmt::format(
-        "A duct has stopped once its plug stays below {:g} % of its largest velocity. A dash: not measured, "
-        "or never.",
-        100.0 * o.rest_velocity_fraction);
-  std::set<std::string> references;
-  for (const RunView& view : comparison.runs)
-    if (!view.measures.overshoot_reference_run.empty())
-      references.insert(view.measures.overshoot_reference_run);
-  const std::string gauge = gauge_name(comparison);
-  return fmt::format(
-      "A run is at rest by shear rate once the 99th percentile of the shear rate stays below {:g} 1/s, and "
-      "by {} rate "
-      "once the {} grows by less than {:g} mm/s over {:g} s, up to the end of its record. A dash: not "
-      "measured, or "
-      "never. These thresholds are customary, not criteria: a fluid that creeps for ever passes them too. "
-      "The volume of a "
-      "material point run includes its elastic compression. {}",
-      o.rest_shear_rate, gauge, gauge, 1e3 * o.rest_spread_rate, o.rate_window,
-      references.empty()
-          ? fmt::format("No run of the elasto-viscoplastic law is among these, so there is no arrested {} to "
-                        "count from.",
-                        gauge)
-          : "Arrested " + gauge + ": that of " + words::listed({references.begin(), references.end()}) + ".");
-}
-
 Table measures_table(const Comparison& comparison) {
-  std::vector<RunColumn> columns;
-  if (is_slump(comparison)) {
-    const double depth_mm = 1e3 * comparison.gauges.spread_depth;
-    const Format mm = lengths(comparison), finer = lengths(comparison, 1), seconds = times(comparison, 1);
-    columns = {measure_column("Spread at the end", "mm", mm, &Measures::gauge_end, 1e3),
-               measure_column("±", "mm", mm, &Measures::uncertainty, 1e3),
-               measure_column(fmt::format("at {:g} mm depth", 0.5 * depth_mm), "mm", mm,
-                              &Measures::spread_at_half, 1e3),
-               measure_column(fmt::format("at {:g} mm depth", 2.0 * depth_mm), "mm", mm,
-                              &Measures::spread_at_twice, 1e3),
-               measure_column("Centre", "mm", finer, &Measures::centre_depth, 1e3),
-               {{"Recorded until", "s", times(comparison, 0)},
-                [](const RunView& view) { return view.exact ? Table::Cell() : cell(view.measures.end); }},
-               measure_column("Rest, declared", "s", seconds, &Measures::rest_declared),
-               measure_column("Still to come, at most", "mm", finer, &Measures::growth_to_come, 1e3),
-               measure_column("Rest by shear rate", "s", seconds, &Measures::rest_by_shear_rate),
-               measure_column("Rest by spread rate", "s", seconds, &Measures::rest_by_spread_rate)};
-    for (const double time : comparison.thresholds.overshoot_times)
-      columns.push_back(
-          {{fmt::format("Past the arrested spread at {:g} s", time), "mm", signed_lengths(comparison)},
-           [time](const RunView& view) {
-             const auto at = view.measures.overshoot.find(time);
-             return at == view.measures.overshoot.end() ? Table::Cell() : Table::Cell(1e3 * at->second);
-           }});
-  } else if (!is_duct(comparison)) {
-    for (const Reading& reading : readings_of(comparison.kind)) {
-      const auto part = [quantity = reading.quantity](std::optional<double> ReadValue::*member) {
-        return [=](const RunView& view) {
-          const auto found = view.measures.readings.find(quantity);
-          return found == view.measures.readings.end() ? Table::Cell() : cell(found->second.*member);
-        };
-      };
-      const Format format = reading.unit == "mm"  ? lengths(comparison)
-                            : reading.unit == "s" ? times(comparison, 2)
-                                                  : significant(3);
-      columns.push_back({{capitalised(reading.name), reading.unit, format}, part(&ReadValue::value)});
-      columns.push_back({{"± of " + reading.name, reading.unit,
-                          reading.unit == "mm" ? lengths(comparison) : significant(2)},
-                         part(&ReadValue::uncertainty)});
-    }
-    columns.push_back({{"Recorded until", "s", times(comparison, 1)}, [](const RunView& view) {
-                         return view.exact ? Table::Cell() : cell(view.measures.end);
-                       }});
-    columns.push_back(
-        measure_column("Rest by shear rate", "s", times(comparison, 1), &Measures::rest_by_shear_rate));
-  } else {
-    columns = {
-        measure_column("Plug velocity at the end", "m/s", significant(4), &Measures::gauge_end),
-        measure_column("Stops after the last change of force", "s", fixed(2), &Measures::stop_after_step),
-        measure_column("Exact bound", "s", fixed(2), &Measures::stopping_bound),
-        measure_column("Rest by shear rate", "s", fixed(2), &Measures::rest_by_shear_rate)};
-  }
+  std::vector<RunColumn> columns = comparison.apparatus->measure_columns(comparison);
   columns.push_back(measure_column("Volume drift", "%", signed_fixed(3), &Measures::volume_drift, 100.0));
   columns.push_back({{"Verdict", "", {}, true}, verdict});
   Table table = table_of_runs(comparison, "measures", "measures of each run", columns,
                               [](const RunView&) { return true; });
-  table.caption = measures_caption(comparison);
+  table.caption = comparison.apparatus->measures_caption(comparison);
   return table;
 }
 
@@ -371,7 +261,8 @@ std::optional<Chapter> square_chapter(const Comparison& comparison) {
     curve.colour = colour == 0 ? -1 : colour - 1;
     curve.dash = colour++;
     plot.curves.push_back(std::move(curve));
-    table.columns.push_back({name, unit, is_duct(comparison) ? significant(3) : signed_lengths(comparison)});
+    table.columns.push_back(
+        {name, unit, comparison.apparatus->has_depth() ? signed_lengths(comparison) : significant(3)});
   }
   for (const double time : comparison.times) {
     const auto at = std::lower_bound(square.at.begin(), square.at.end(), time - 1e-9,
@@ -410,36 +301,15 @@ std::optional<Chapter> shear_chapter(const Comparison& comparison) {
   return Chapter{"rest", "How it comes to rest", {plot}};
 }
 
-std::string residual_caption(const Comparison& comparison) {
-  if (is_duct(comparison))
-    return "Predicted: the steady velocity of the regularised law under the last force, from its flow curve.";
-  if (!is_slump(comparison))
-    return fmt::format(
-        "Measured: the median slope of the {} over the last {:g} s (of a short record, its last fifth).",
-        gauge_name(comparison), comparison.thresholds.residual_window);
-  return fmt::format(
-      "Measured: the median slope of the spread over the last {:g} s (of a short record, its last fifth). "
-      "Predicted: on the arrested profile, "
-      "whose base carries "
-      "the yield stress, the law gives a depth-mean velocity u at half the radius; a shape that stays "
-      "similar then grows in "
-      "diameter by 4 u. Past the arrested radius the base stress falls with its fifth power, and the creep "
-      "with it. A run of "
-      "a law that comes to rest has no predicted creep. Exact: how fast a thin film of the exact material "
-      "still approaches rest at that time, with the pull of its plug and without, where creep does not "
-      "explain what moves.",
-      comparison.thresholds.residual_window);
-}
-
 std::optional<Chapter> residual_chapter(const Comparison& comparison) {
-  const double scale = is_duct(comparison) ? 1.0 : 1e3;
+  const double scale = comparison.apparatus->has_depth() ? 1e3 : 1.0;
   const std::string unit = speed_unit(comparison);
   const auto moving = [](const RunView& view) { return !view.exact && view.measures.residual.has_value(); };
   Bars bars{"residual",
-            is_duct(comparison)
-                ? "plug velocity over the last seconds"
-                : fmt::format("growth of the {} over the last seconds", gauge_name(comparison)),
-            residual_caption(comparison),
+            comparison.apparatus->has_depth()
+                ? fmt::format("growth of the {} over the last seconds", gauge_name(comparison))
+                : "plug velocity over the last seconds",
+            comparison.apparatus->residual_caption(comparison),
             {"speed", unit, true},
             {},
             {{"measured", {}}, {"predicted by the regularisation", {}}}};
@@ -448,7 +318,7 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
     const Measures& m = view.measures;
     bars.categories.push_back(view.label + (view.doubt.any() ? fmt::format(" ({})", view.doubt.word()) : "") +
                               (view.trouble.empty() ? "" : " (incomplete)"));
-    const double floor = is_duct(comparison) ? 1e-8 : 10.0 * comparison.grain.speed;
+    const double floor = comparison.apparatus->has_depth() ? 10.0 * comparison.grain.speed : 1e-8;
     bars.groups[0].values.push_back(std::max(std::abs(*m.residual) * scale, floor));
     bars.groups[1].values.push_back(m.predicted_creep && *m.predicted_creep > 0.0 ? scale * *m.predicted_creep
                                                                                   : none);
@@ -482,19 +352,19 @@ std::optional<Chapter> residual_chapter(const Comparison& comparison) {
 
 /// What the gauge is counted from where a run is cut: the arrested spread of a slump.
 double stop_base(const Comparison& comparison, const RunView& view) {
-  if (!grows_to_rest(comparison.kind)) return 0.0;
+  if (!comparison.apparatus->grows()) return 0.0;
   return view.measures.overshoot_reference.value_or(view.measures.gauge_end.value_or(0.0));
 }
 
 std::optional<Chapter> stops_chapter(const Comparison& comparison) {
   if (comparison.stops.size() < 2) return std::nullopt;
-  const bool slump = !is_duct(comparison);
+  const bool depth_profiles = comparison.apparatus->has_depth();
   const std::string gauge = gauge_name(comparison);
   const double scale = scale_of(comparison);
   Plot plot{"stops",
-            slump ? gauge + " that is read if the run is cut at a time"
-                  : "plug velocity if the run is cut at a time",
-            slump
+            depth_profiles ? gauge + " that is read if the run is cut at a time"
+                           : "plug velocity if the run is cut at a time",
+            depth_profiles
                 ? "Counted from the arrested " + gauge +
                       " of the elasto-viscoplastic run of the same solver "
                       "where there is one, "
@@ -503,7 +373,7 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
                       "slope of any other is the error that choice makes."
                 : "A run that has come to rest needs no choice of when to stop.",
             {"time of the stop", "s", false, false, comparison.stops.front(), comparison.stops.back()},
-            {slump ? gauge + " less the arrested one" : "plug velocity", unit_of(comparison)},
+            {depth_profiles ? gauge + " less the arrested one" : "plug velocity", unit_of(comparison)},
             {}};
   const auto measured = [](const RunView& view) {
     return !view.exact && view.measures.stop_lowest.has_value();
@@ -520,7 +390,7 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
     plot.curves.push_back(std::move(curve));
   }
   if (plot.curves.empty()) return std::nullopt;
-  const Format format = slump ? lengths(comparison) : significant(3);
+  const Format format = depth_profiles ? lengths(comparison) : significant(3);
   const auto range = [](const RunView& view) {
     return *view.measures.stop_highest - *view.measures.stop_lowest;
   };
@@ -529,7 +399,7 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
       measure_column("Highest reading", unit_of(comparison), format, &Measures::stop_highest, scale),
       {{"Range", unit_of(comparison), format},
        [=](const RunView& view) { return Table::Cell(scale * range(view)); }}};
-  if (slump)
+  if (depth_profiles)
     columns.push_back(
         {{"Range of the arrested " + gauge, "%", fixed(1)}, [&comparison, range](const RunView& view) {
            return Table::Cell(100.0 * range(view) / stop_base(comparison, view));
@@ -546,28 +416,29 @@ std::string difference_word(const std::string& kind) {
 
 std::optional<Chapter> pairs_chapter(const Comparison& comparison) {
   if (comparison.pairs.empty()) return std::nullopt;
-  const bool slump = !is_duct(comparison);
+  const bool depth_profiles = comparison.apparatus->has_depth();
   const double scale = scale_of(comparison);
-  const double depth = slump ? 1e3 : 1.0;
-  const std::string unit = slump ? "mm" : "m/s";
+  const double depth = depth_profiles ? 1e3 : 1.0;
+  const std::string unit = depth_profiles ? "mm" : "m/s";
   Table table{
       "pairs", "differences between profiles",
       std::string(
           comparison.radial
               ? "Norms of the difference in depth on a common radius grid, weighted by plan area over all "
                 "that either run covers"
-          : slump ? "Norms of the difference in depth on a common grid, over all that either run covers"
-                  : "Norms of the difference in velocity on a common grid") +
+          : depth_profiles
+              ? "Norms of the difference in depth on a common grid, over all that either run covers"
+              : "Norms of the difference in velocity on a common grid") +
           ": L1 the mean, L2 the root of the mean square, L∞ the largest."};
   table.columns = {{"Run", "", {}, true},
                    {"against", "", {}, true},
                    {"Differs in", "", {}, true},
                    {capitalised(gauge_name(comparison)), unit_of(comparison),
-                    slump ? signed_lengths(comparison) : significant(3)},
-                   {"L1", unit, slump ? lengths(comparison, 2) : significant(3)},
-                   {"L2", unit, slump ? lengths(comparison, 2) : significant(3)},
-                   {"L∞", unit, slump ? lengths(comparison, 1) : significant(3)},
-                   {slump ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
+                    depth_profiles ? signed_lengths(comparison) : significant(3)},
+                   {"L1", unit, depth_profiles ? lengths(comparison, 2) : significant(3)},
+                   {"L2", unit, depth_profiles ? lengths(comparison, 2) : significant(3)},
+                   {"L∞", unit, depth_profiles ? lengths(comparison, 1) : significant(3)},
+                   {depth_profiles ? "Volume that lies elsewhere" : "L1, relative", "%", significant(2)},
                    {"L2, relative", "%", significant(2)}};
   table.choice = "Time";
   std::map<double, std::vector<Table::Row>> by_time;
@@ -676,11 +547,8 @@ std::vector<Block> words_of(const Comparison& comparison) {
     blocks.push_back(Text{
         "The scene names runs that are not among these: " + words::listed(comparison.missing, "; ") + ".",
         Text::Style::warning});
-  const char* stop = comparison.kind == scenes::Kind::v_funnel ? "When is light seen, and does it run empty?"
-                     : comparison.kind == scenes::Kind::dam_break ? "How far does each run, and when?"
-                                                                  : "When does each stop, and where?";
-  const std::pair<Finding::Topic, const char*> questions[] = {
-      {Finding::Topic::stop, stop},
+  const std::pair<Finding::Topic, std::string> questions[] = {
+      {Finding::Topic::stop, comparison.apparatus->stop_question()},
       {Finding::Topic::apart, "How far apart are they?"},
       {Finding::Topic::cause, "Which difference is physics, which numerics?"},
       {Finding::Topic::cost, "What did it cost?"}};

@@ -622,8 +622,8 @@ TEST_F(ComparisonTest, AGaugeThatReadsNothingAtTheEndIsNeverZeroAndNeverAnOldRea
 }
 
 TEST(Words, HaveDigitsThatSuitTheBody) {
-  const words::Grain small =
-      words::grain_of({.spread_depth = 3e-5, .still_speed = 1e-5, .rate_window = 0.2}, scenes::Kind::slump);
+  const words::Grain small = words::grain_of({.spread_depth = 3e-5, .still_speed = 1e-5, .rate_window = 0.2},
+                                             scenes::MainGauge::spread);
   EXPECT_EQ(words::spread(0.005419, small), "5.42 mm");
   EXPECT_EQ(words::spread(0.005419, 0.0002, small), "5.4 ± 0.2 mm");
   EXPECT_EQ(words::spread(0.005419, 1e-9, small), "5.42 ± 0.01 mm");
@@ -635,7 +635,8 @@ TEST(Words, HaveDigitsThatSuitTheBody) {
   EXPECT_EQ(words::decimals_down_to(5.3), 0);
   EXPECT_EQ(words::decimals_down_to(0.053), 2);
   // 0.6 mm, as of a mini-cone: told to a tenth of a millimetre.
-  EXPECT_EQ(words::spread(0.2313, words::grain_of({.spread_depth = 6e-4}, scenes::Kind::slump)), "231.3 mm");
+  EXPECT_EQ(words::spread(0.2313, words::grain_of({.spread_depth = 6e-4}, scenes::MainGauge::spread)),
+            "231.3 mm");
 }
 
 TEST(Words, CarryNoMoreDigitsThanTheyShould) {

@@ -1,8 +1,11 @@
+#include "compare/findings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/comparison.h"
 #include "compare/measures/gauges.h"
 #include "compare/measures/run_measures.h"
@@ -14,18 +17,14 @@ namespace flowrest::compare {
 namespace {
 
 using words::listed;
-
-std::string capitalised(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
+using Topic = Finding::Topic;
 
 std::string end_of(const Comparison& comparison, const RunView& view) {
   const auto& end = view.measures.gauge_end;
   if (!end)
     return fmt::format("nothing that can be read (nowhere {:g} mm deep)",
-                       1e3 * view.gauges.edge_depth(comparison.kind));
-  return words::of(gauge_of(comparison.kind), *end, view.measures.uncertainty, comparison.grain);
+                       1e3 * comparison.apparatus->edge_depth(view.gauges));
+  return words::of(comparison.apparatus->gauge(), *end, view.measures.uncertainty, comparison.grain);
 }
 
 /// What is known of the difference between two runs; a run without an uncertainty adds none.
@@ -35,7 +34,7 @@ double uncertainty_of(const RunView& run, const RunView& reference) {
 
 /// "62 ± 14 mm wider", or that the two cannot be told apart.
 std::string difference_in(const Comparison& comparison, double value, double uncertainty) {
-  const Gauge& gauge = gauge_of(comparison.kind);
+  const Gauge& gauge = comparison.apparatus->gauge();
   const bool known = gauge.unit == "mm" || uncertainty > 0.0;
   if (known && std::abs(value) <= uncertainty)
     return fmt::format("level within {}", words::of(gauge, uncertainty, std::nullopt, comparison.grain));
@@ -47,11 +46,6 @@ std::string doubt_clause(const RunView& view) {
   return view.doubt.any() ? fmt::format("; {}: {}", view.doubt.word(), view.doubt.why) : "";
 }
 
-/// The same in brackets, at a sentence's end.
-std::string doubt_in_brackets(const RunView& view) {
-  return view.doubt.any() ? fmt::format(" ({}: {})", view.doubt.word(), view.doubt.why) : "";
-}
-
 /// "still grows by 0.10 to 0.15 mm/s then": a thin film of the exact material.
 std::string approach_words(const Comparison& comparison, const Measures& m) {
   return fmt::format("still grows by {:.2g} to {} then", 1e3 * *m.approach_least,
@@ -60,7 +54,7 @@ std::string approach_words(const Comparison& comparison, const Measures& m) {
 
 /// What an elasto-viscoplastic body came to.
 std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
-  const std::string& gauge = gauge_of(comparison.kind).name;
+  const std::string& gauge = comparison.apparatus->gauge().name;
   const Measures& m = view.measures;
   const std::string doubt = doubt_in_brackets(view);
   const double finest = comparison.grain.length;
@@ -89,7 +83,7 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
 
 /// "MPM papanastasiou stands at 589 mm (13 mm past the arrested spread, still growing by 0.13 mm/s)".
 std::string fluid_clause(const Comparison& comparison, const RunView& view) {
-  const Gauge& gauge = gauge_of(comparison.kind);
+  const Gauge& gauge = comparison.apparatus->gauge();
   const Measures& m = view.measures;
   std::string inner;
   const auto add = [&](const std::string& part) { inner += (inner.empty() ? "" : ", ") + part; };
@@ -134,65 +128,6 @@ const Pair::At* last_gauged(const Pair& pair) {
   return nullptr;
 }
 
-/// What still moves, held against what the regularisation alone predicts.
-std::string cause_sentence(const Comparison& comparison) {
-  std::vector<std::string> creep, approach, either, noise, unexplained;
-  const auto speed = [&](double value) {
-    return grows_to_rest(comparison.kind) ? words::speed(value, comparison.grain) : words::velocity(value);
-  };
-  for (const RunView& view : comparison.runs) {
-    const Measures& m = view.measures;
-    if (!m.residual || !m.predicted_creep || !(*m.predicted_creep > 0.0)) continue;
-    const std::string part = fmt::format("{} ({} of {} predicted)", view.label, speed(std::abs(*m.residual)),
-                                         speed(*m.predicted_creep));
-    if (m.cause == Cause::creep) creep.push_back(part);
-    if (m.cause == Cause::approaching_rest)
-      approach.push_back(fmt::format("{} ({}; exact material {}, its creep {})", view.label,
-                                     speed(std::abs(*m.residual)), approach_words(comparison, m),
-                                     speed(*m.predicted_creep)));
-    if (m.cause == Cause::creep_or_noise) either.push_back(part);
-    if (m.cause == Cause::noise) noise.push_back(part);
-    if (m.cause == Cause::unexplained) unexplained.push_back(part);
-  }
-  std::string text;
-  const auto add = [&](const std::vector<std::string>& parts, const std::string& what) {
-    if (!parts.empty()) text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", what, listed(parts));
-  };
-  add(creep, fmt::format("What still moves is the creep of the regularisation, within a factor of {:.3g}",
-                         comparison.thresholds.creep_factor));
-  add(approach, "What still moves is the exact material's own approach to rest, and creep");
-  add(either, "Creep of the regularisation or noise, which cannot be told apart here");
-  add(noise, "Noise of the numerics, beyond what the regularisation explains");
-  add(unexplained, "Faster than the regularisation explains, though no noise was reported");
-  return text;
-}
-
-/// Law against solver: the same solver with another law, and the same law in another solver.
-std::string split_sentence(const Comparison& comparison) {
-  std::vector<std::string> law, solver;
-  for (const Pair& pair : comparison.pairs) {
-    if (pair.kind != "law" && pair.kind != "solver") continue;
-    const Pair::At* at = last_gauged(pair);
-    if (!at) continue;
-    const RunView &run = comparison.runs[pair.run], &reference = comparison.runs[pair.reference];
-    // Two fluids differ by their regularisation only; the law is read off against the material that stops.
-    if (pair.kind == "law" && reference.fluid) continue;
-    const std::string what =
-        comparison.kind != scenes::Kind::duct
-            ? difference_in(comparison, *at->gauge_difference, uncertainty_of(run, reference))
-            : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
-                          *at->gauge_difference >= 0.0 ? "faster" : "slower");
-    (pair.kind == "law" ? law : solver)
-        .push_back(fmt::format("{} ends {} {} {}", run.label, what,
-                               what.starts_with("level") ? "with" : "than", reference.label));
-  }
-  std::string text;
-  if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
-  if (!solver.empty())
-    text += fmt::format("{}Changing only the solver: {}.", text.empty() ? "" : " ", listed(solver));
-  return text;
-}
-
 /// Runs whose spread depends on the depth at which it is read: their edge is a film.
 std::string edge_sentence(const Comparison& comparison) {
   std::vector<std::string> films;
@@ -221,41 +156,6 @@ std::string cost_sentence(const Comparison& comparison) {
   return costs.empty() ? "" : fmt::format("CPU time: {}.", listed(costs));
 }
 
-/// The whole difference between the fluid in OpenFOAM and the material in MPM, split.
-std::string square_sentence(const Comparison& comparison) {
-  if (!comparison.square) return "";
-  const Square& square = *comparison.square;
-  if (square.at.empty()) {
-    if (square.missing.empty()) return "";
-    std::vector<std::string> commands;
-    for (const std::string& command : square.missing) commands.push_back(fmt::format("`{}`", command));
-    return fmt::format("Law and discretisation cannot be told apart in full, for want of {}: {}.",
-                       commands.size() == 1 ? "a run" : "runs", listed(commands));
-  }
-  const Square::At& at = square.at.back();
-  const Gauge& gauge = gauge_of(comparison.kind);
-  const auto amount = [&](double value) {
-    return comparison.kind == scenes::Kind::duct
-               ? words::velocity(value)
-               : fmt::format("{}{:.{}f} {}", value < 0.0 ? "−" : "", std::abs(gauge.shown * value),
-                             gauge.unit == "mm" ? comparison.grain.decimals() : 0, gauge.unit);
-  };
-  const auto walls = [&](const std::optional<std::size_t>& run) {
-    return !comparison.runs[*run].walls_differ.empty();
-  };
-  const bool walls_too = walls(square.mpm_solid) || walls(square.mpm_fluid) || walls(square.foam_solid) ||
-                         walls(square.foam_fluid);
-  std::string text = fmt::format(
-      "Of the {} between {} and {} at {}, the law makes {} and the discretisation {}; {} more can be given "
-      "to neither, and "
-      "scatter and the reading of the edge blur it by {}.",
-      amount(at.total), comparison.runs[*square.foam_fluid].label, comparison.runs[*square.mpm_solid].label,
-      words::time(at.time), amount(at.law), amount(at.discretisation), amount(std::abs(at.interaction)),
-      amount(at.noise));
-  if (walls_too) text += " What the walls do that differ counts as discretisation here.";
-  return text;
-}
-
 /// Between which spreads the runs end.
 std::string range_sentence(const Comparison& comparison) {
   const RunView *least = nullptr, *most = nullptr;
@@ -264,36 +164,9 @@ std::string range_sentence(const Comparison& comparison) {
     if (!least || *view.measures.gauge_end < *least->measures.gauge_end) least = &view;
     if (!most || *view.measures.gauge_end > *most->measures.gauge_end) most = &view;
   }
-  if (!least || least == most || !grows_to_rest(comparison.kind)) return "";
-  return fmt::format("The {}s end between {} ({}) and {} ({}).", gauge_of(comparison.kind).name,
+  if (!least || least == most || !comparison.apparatus->grows()) return "";
+  return fmt::format("The {}s end between {} ({}) and {} ({}).", comparison.apparatus->gauge().name,
                      end_of(comparison, *least), least->label, end_of(comparison, *most), most->label);
-}
-
-/// A reading of a run in words; nothing where it has none.
-std::optional<std::string> reading_of(const Comparison& comparison, const RunView& view,
-                                      const std::string& quantity) {
-  const auto found = view.measures.readings.find(quantity);
-  if (found == view.measures.readings.end() || !found->second.value) return std::nullopt;
-  return words::reading(*found->second.value, found->second.uncertainty, reading_named(quantity).unit,
-                        comparison.grain);
-}
-
-/// When an event takes place in every run: "light is seen through the funnel after 1.4 s (MPM ...)".
-std::string event_clause(const Comparison& comparison, const std::string& quantity,
-                         const std::string& happens, const std::string& never) {
-  std::vector<std::string> seen, dark;
-  for (const RunView& view : comparison.runs) {
-    if (view.exact) continue;
-    if (const auto light = reading_of(comparison, view, quantity))
-      seen.push_back(fmt::format("after {} ({})", *light, view.label));
-    else if (view.trouble.empty())
-      dark.push_back(view.label);
-  }
-  std::string text = seen.empty() ? "" : happens + " " + listed(seen);
-  if (!dark.empty())
-    text += fmt::format("{}{} {} by {}", text.empty() ? "" : "; ", listed(dark), never,
-                        words::time(comparison.end));
-  return text;
 }
 
 /// The headline: what comes to rest and what does not, with every warning.
@@ -319,7 +192,7 @@ std::string opening_sentence(const Comparison& comparison) {
     all_fluids = all_fluids && view.fluid;
   }
   std::string text;
-  if (arrested && grows_to_rest(comparison.kind)) {
+  if (arrested && comparison.apparatus->grows()) {
     const Measures& m = arrested->measures;
     const auto rest = m.rest_declared        ? m.rest_declared
                       : m.rest_by_shear_rate ? m.rest_by_shear_rate
@@ -330,24 +203,17 @@ std::string opening_sentence(const Comparison& comparison) {
                        rest ? " after " + words::time(*rest) : "");
     const auto height = reading_of(comparison, *arrested, "end_height_mm");
     text += arrival && height ? fmt::format(", {} high at the wall", *height)
-                              : fmt::format(" with a {} of {}", gauge_of(comparison.kind).name,
+                              : fmt::format(" with a {} of {}", comparison.apparatus->gauge().name,
                                             end_of(comparison, *arrested));
-  } else if (comparison.kind == scenes::Kind::v_funnel) {
-    text = event_clause(comparison, "light_s", "light is seen through the funnel", "shows no light");
-  } else if (comparison.kind == scenes::Kind::dam_break) {
-    text = event_clause(comparison, "arrival_s", "the front reaches the end wall",
-                        "has not reached the end wall");
-  } else if (arrested && arrested->measures.stop_after_step) {
-    text = fmt::format("{} stops {} after the last change of force", arrested->label,
-                       words::time(*arrested->measures.stop_after_step));
+  } else {
+    text = comparison.apparatus->opening(comparison, arrested);
   }
   const auto add = [&](const std::string& clause) { text += (text.empty() ? "" : "; ") + clause; };
   const std::string who = moving.size() > 2 && all_fluids
                               ? fmt::format("the {} regularised fluids", moving.size())
                               : listed(moving);
   // A funnel runs empty and water never rests: that they move says nothing.
-  if (!moving.empty() && comparison.kind != scenes::Kind::v_funnel &&
-      comparison.kind != scenes::Kind::dam_break)
+  if (!moving.empty() && comparison.apparatus->motion_is_news())
     add(fmt::format("{} {} still moving at {}", who, moving.size() == 1 ? "is" : "are",
                     words::time(comparison.end)));
   for (const auto& [word, labels] : doubtful) add(fmt::format("{}: {}", word, listed(labels)));
@@ -377,38 +243,147 @@ std::string uncertainty_sentence(const Comparison& comparison) {
                                      listed(parts, "; "));
 }
 
-using Topic = Finding::Topic;
+}  // namespace
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string doubt_in_brackets(const RunView& view) {
+  return view.doubt.any() ? fmt::format(" ({}: {})", view.doubt.word(), view.doubt.why) : "";
+}
+
+std::string cause_sentence(const Comparison& comparison) {
+  std::vector<std::string> creep, approach, either, noise, unexplained;
+  const auto speed = [&](double value) {
+    return comparison.apparatus->grows() ? words::speed(value, comparison.grain) : words::velocity(value);
+  };
+  for (const RunView& view : comparison.runs) {
+    const Measures& m = view.measures;
+    if (!m.residual || !m.predicted_creep || !(*m.predicted_creep > 0.0)) continue;
+    const std::string part = fmt::format("{} ({} of {} predicted)", view.label, speed(std::abs(*m.residual)),
+                                         speed(*m.predicted_creep));
+    if (m.cause == Cause::creep) creep.push_back(part);
+    if (m.cause == Cause::approaching_rest)
+      approach.push_back(fmt::format("{} ({}; exact material {}, its creep {})", view.label,
+                                     speed(std::abs(*m.residual)), approach_words(comparison, m),
+                                     speed(*m.predicted_creep)));
+    if (m.cause == Cause::creep_or_noise) either.push_back(part);
+    if (m.cause == Cause::noise) noise.push_back(part);
+    if (m.cause == Cause::unexplained) unexplained.push_back(part);
+  }
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& parts, const std::string& what) {
+    if (!parts.empty()) text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", what, listed(parts));
+  };
+  add(creep, fmt::format("What still moves is the creep of the regularisation, within a factor of {:.3g}",
+                         comparison.thresholds.creep_factor));
+  add(approach, "What still moves is the exact material's own approach to rest, and creep");
+  add(either, "Creep of the regularisation or noise, which cannot be told apart here");
+  add(noise, "Noise of the numerics, beyond what the regularisation explains");
+  add(unexplained, "Faster than the regularisation explains, though no noise was reported");
+  return text;
+}
+
+std::string arrival_sentence(const Comparison& comparison, const RunView& view, bool with_height) {
+  const auto arrival = reading_of(comparison, view, "arrival_s"),
+             height = reading_of(comparison, view, "end_height_mm");
+  if (!arrival) return "";
+  return fmt::format(
+      "{} reaches the end wall after {}{}{}.", view.label, *arrival,
+      height && with_height ? fmt::format(" and stands {} high there at the end", *height) : "",
+      doubt_in_brackets(view));
+}
+
+std::string split_sentence(const Comparison& comparison) {
+  std::vector<std::string> law, solver;
+  for (const Pair& pair : comparison.pairs) {
+    if (pair.kind != "law" && pair.kind != "solver") continue;
+    const Pair::At* at = last_gauged(pair);
+    if (!at) continue;
+    const RunView &run = comparison.runs[pair.run], &reference = comparison.runs[pair.reference];
+    // Two fluids differ by their regularisation only; the law is read off against the material that stops.
+    if (pair.kind == "law" && reference.fluid) continue;
+    const std::string what =
+        comparison.apparatus->has_depth()
+            ? difference_in(comparison, *at->gauge_difference, uncertainty_of(run, reference))
+            : fmt::format("{} {}", words::velocity(std::abs(*at->gauge_difference)),
+                          *at->gauge_difference >= 0.0 ? "faster" : "slower");
+    (pair.kind == "law" ? law : solver)
+        .push_back(fmt::format("{} ends {} {} {}", run.label, what,
+                               what.starts_with("level") ? "with" : "than", reference.label));
+  }
+  std::string text;
+  if (!law.empty()) text += fmt::format("Changing only the law: {}.", listed(law));
+  if (!solver.empty())
+    text += fmt::format("{}Changing only the solver: {}.", text.empty() ? "" : " ", listed(solver));
+  return text;
+}
+
+std::string square_sentence(const Comparison& comparison) {
+  if (!comparison.square) return "";
+  const Square& square = *comparison.square;
+  if (square.at.empty()) {
+    if (square.missing.empty()) return "";
+    std::vector<std::string> commands;
+    for (const std::string& command : square.missing) commands.push_back(fmt::format("`{}`", command));
+    return fmt::format("Law and discretisation cannot be told apart in full, for want of {}: {}.",
+                       commands.size() == 1 ? "a run" : "runs", listed(commands));
+  }
+  const Square::At& at = square.at.back();
+  const Gauge& gauge = comparison.apparatus->gauge();
+  const auto amount = [&](double value) {
+    return comparison.apparatus->has_depth()
+               ? fmt::format("{}{:.{}f} {}", value < 0.0 ? "−" : "", std::abs(gauge.shown * value),
+                             gauge.unit == "mm" ? comparison.grain.decimals() : 0, gauge.unit)
+               : words::velocity(value);
+  };
+  const auto walls = [&](const std::optional<std::size_t>& run) {
+    return !comparison.runs[*run].walls_differ.empty();
+  };
+  const bool walls_too = walls(square.mpm_solid) || walls(square.mpm_fluid) || walls(square.foam_solid) ||
+                         walls(square.foam_fluid);
+  std::string text = fmt::format(
+      "Of the {} between {} and {} at {}, the law makes {} and the discretisation {}; {} more can be given "
+      "to neither, and "
+      "scatter and the reading of the edge blur it by {}.",
+      amount(at.total), comparison.runs[*square.foam_fluid].label, comparison.runs[*square.mpm_solid].label,
+      words::time(at.time), amount(at.law), amount(at.discretisation), amount(std::abs(at.interaction)),
+      amount(at.noise));
+  if (walls_too) text += " What the walls do that differ counts as discretisation here.";
+  return text;
+}
+
+std::optional<std::string> reading_of(const Comparison& comparison, const RunView& view,
+                                      const std::string& quantity) {
+  const auto found = view.measures.readings.find(quantity);
+  if (found == view.measures.readings.end() || !found->second.value) return std::nullopt;
+  return words::reading(*found->second.value, found->second.uncertainty, reading_named(quantity).unit,
+                        comparison.grain);
+}
+
+std::string event_clause(const Comparison& comparison, const std::string& quantity,
+                         const std::string& happens, const std::string& never) {
+  std::vector<std::string> seen, dark;
+  for (const RunView& view : comparison.runs) {
+    if (view.exact) continue;
+    if (const auto light = reading_of(comparison, view, quantity))
+      seen.push_back(fmt::format("after {} ({})", *light, view.label));
+    else if (view.trouble.empty())
+      dark.push_back(view.label);
+  }
+  std::string text = seen.empty() ? "" : happens + " " + listed(seen);
+  if (!dark.empty())
+    text += fmt::format("{}{} {} by {}", text.empty() ? "" : "; ", listed(dark), never,
+                        words::time(comparison.end));
+  return text;
+}
 
 void tell(Comparison& comparison, Topic topic, std::string text) {
   if (!text.empty()) comparison.findings.push_back({topic, capitalised(std::move(text))});
 }
 
-/// What a run's front met in a box or a tank, and what runs out of a funnel.
-std::string readings_sentence(const Comparison& comparison, const RunView& view) {
-  const std::string doubt = doubt_in_brackets(view);
-  if (comparison.kind == scenes::Kind::v_funnel) {
-    const auto light = reading_of(comparison, view, "light_s");
-    const auto rest = reading_of(comparison, view, "rest_s");
-    std::string text = light ? fmt::format("{}: light is seen after {}", view.label, *light)
-                             : fmt::format("{}: no light is seen", view.label);
-    if (!view.gauge.empty())
-      text += fmt::format("; {:.0f} % of the mass has run out by {}", 100.0 * view.gauge.value.back(),
-                          words::time(view.gauge.end()));
-    if (rest) text += fmt::format("; at rest after {}", *rest);
-    return text + doubt + ".";
-  }
-  const auto arrival = reading_of(comparison, view, "arrival_s"),
-             height = reading_of(comparison, view, "end_height_mm");
-  if (arrival)
-    return fmt::format("{} reaches the end wall after {}{}{}.", view.label, *arrival,
-                       height && comparison.kind == scenes::Kind::l_box
-                           ? fmt::format(" and stands {} high there at the end", *height)
-                           : "",
-                       doubt);
-  return "";
-}
-
-/// How lambda goes: down while it flows, up again at rest.
 std::string flocculation_sentence(const Comparison& comparison) {
   std::vector<std::string> parts;
   for (const RunView& view : comparison.runs) {
@@ -426,7 +401,6 @@ std::string flocculation_sentence(const Comparison& comparison) {
   return parts.empty() ? "" : fmt::format("The mean flocculation state λ falls {}.", listed(parts, "; "));
 }
 
-/// How far apart an event is between two laws in one solver, and between two solvers of one law.
 std::string events_apart(const Comparison& comparison, const std::string& quantity,
                          const std::string& event) {
   std::vector<std::string> law, solver;
@@ -457,15 +431,6 @@ std::string events_apart(const Comparison& comparison, const std::string& quanti
   return text;
 }
 
-void describe_funnel(Comparison& comparison) {
-  for (const RunView& view : comparison.runs)
-    if (!view.exact && !view.gauge.empty())
-      tell(comparison, Topic::stop, readings_sentence(comparison, view));
-  tell(comparison, Topic::apart, events_apart(comparison, "light_s", "light is seen"));
-  tell(comparison, Topic::context, flocculation_sentence(comparison));
-}
-
-/// A slump, or what runs along a box or a tank.
 void describe_growth(Comparison& comparison) {
   std::vector<std::string> arrested, in_time;
   for (const RunView& view : comparison.runs) {
@@ -482,11 +447,10 @@ void describe_growth(Comparison& comparison) {
                           view.label));
       continue;
     }
-    if (comparison.kind != scenes::Kind::slump)
-      tell(comparison, Topic::stop, readings_sentence(comparison, view));
+    tell(comparison, Topic::stop, comparison.apparatus->readings_sentence(comparison, view));
     if (!view.fluid) tell(comparison, Topic::stop, arrest_sentence(comparison, view));
   }
-  if (comparison.kind != scenes::Kind::dam_break)
+  if (comparison.apparatus->motion_is_news())
     for (std::string& sentence : fluid_sentences(comparison))
       tell(comparison, Topic::stop, std::move(sentence));
   tell(comparison, Topic::apart, range_sentence(comparison));
@@ -502,108 +466,18 @@ void describe_growth(Comparison& comparison) {
     tell(comparison, Topic::context, fmt::format("Solutions in time end at {}.", listed(in_time)));
 }
 
-std::string duct_sentence(const RunView& view) {
-  const Measures& m = view.measures;
-  const std::string doubt = doubt_in_brackets(view);
-  const std::string largest =
-      words::velocity(*std::max_element(view.gauge.value.begin(), view.gauge.value.end()));
-  if (m.stop_after_step && m.cause != Cause::creep)
-    return fmt::format("{} reaches {} and stops {} after the last change of force{}.", view.label, largest,
-                       words::time(*m.stop_after_step), doubt);
-  if (!m.residual) return fmt::format("{} reaches {}{}.", view.label, largest, doubt);
-  return fmt::format("{} reaches {} and still moves at {}{}.", view.label, largest,
-                     words::velocity(*m.residual), doubt);
-}
-
-void describe_duct(Comparison& comparison) {
-  for (const RunView& view : comparison.runs)
-    if (!view.exact && !view.gauge.empty()) tell(comparison, Topic::stop, duct_sentence(view));
-  for (const RunView& view : comparison.runs)
-    if (view.measures.stopping_bound)
-      tell(comparison, Topic::stop,
-           fmt::format("The exact material stops within {} of the last change of force.",
-                       words::time(*view.measures.stopping_bound)));
-  std::vector<std::string> errors;
-  for (const Pair& pair : comparison.pairs) {
-    if (pair.kind != "exact") continue;
-    // Where the exact material is at rest there is nothing to be relative to.
-    const auto steady = std::find_if(pair.at.begin(), pair.at.end(),
-                                     [](const Pair::At& at) { return at.error.l2_relative > 0.0; });
-    if (steady != pair.at.end())
-      errors.push_back(fmt::format("{} by {} at {}", comparison.runs[pair.run].label,
-                                   words::percent(steady->error.l2_relative), words::time(steady->time)));
-  }
-  if (!errors.empty())
-    tell(comparison, Topic::apart,
-         fmt::format("In L2 the profiles differ from the exact steady one: {}.", listed(errors)));
-  tell(comparison, Topic::apart, split_sentence(comparison));
-  tell(comparison, Topic::cause, square_sentence(comparison));
-  tell(comparison, Topic::cause, cause_sentence(comparison));
-}
-
-/// Which comparison is fair where nothing exact is known.
-constexpr const char* fair_runs =
+const char* const fair_runs =
     "No exact solution is among these. The same law in two solvers shows the discretisation, two laws in the "
     "same "
     "solver show the law, two grids of the same run show what the numbers are good to. Held against a "
     "measured number "
     "(`flowrest validate`) a run must first be known better than the difference.";
 
-std::string fair_slump(const Comparison& comparison) {
-  if (std::none_of(comparison.runs.begin(), comparison.runs.end(),
-                   [](const RunView& v) { return v.exact; }) &&
-      number(comparison.runs.front().run.info, "/settings/geometry/mould_lift_velocity"))
-    return fair_runs;
-  std::string text =
-      "The exact profiles are quasi-static: they are the shapes at which gravity is just held by the yield "
-      "stress, reached without inertia. A cone that is let go at once arrives with momentum, which may carry "
-      "it past them; how far depends on its viscosity. (For Roussel's benchmark, plastic viscosities of 20, "
-      "50 "
-      "and 500 Pa s arrested at 557, 554 and 553 mm in one and the same scheme on 10 mm cells; taken to "
-      "infinite "
-      "viscosity on 5 mm cells, 553 ± 5 mm for a spread whose second-order solution is 562 mm, so that the "
-      "profile's next order may be worth 10 mm.) The leading order in height over radius, whose foot lies at "
-      "600 mm there, leaves out the extensional stress in the unsheared layer and is too wide; a run that "
-      "matches it does so because its errors cancel. So the fair comparisons are: one run with another of "
-      "the "
-      "same law, which shows the discretisation; one run with another of the same solver, which shows the "
-      "law; "
-      "and any run with the second-order profile only to within that next order.";
-  const bool axisymmetric = comparison.radial;
-  return axisymmetric ? text
-                      : "The exact profile is quasi-static and of leading order: inertia carries a slump "
-                        "that is let go at "
-                        "once past it. The fair comparisons are those between runs: the same law in two "
-                        "solvers shows the "
-                        "discretisation, two laws in the same solver show the law.";
-}
-
-}  // namespace
-
 void describe(Comparison& comparison) {
   comparison.findings.clear();
   tell(comparison, Topic::opening, opening_sentence(comparison));
   tell(comparison, Topic::stop, trouble_sentences(comparison));
-  if (comparison.kind == scenes::Kind::slump) {
-    describe_growth(comparison);
-    comparison.fair = fair_slump(comparison);
-  } else if (comparison.kind != scenes::Kind::duct) {
-    if (comparison.kind == scenes::Kind::v_funnel)
-      describe_funnel(comparison);
-    else
-      describe_growth(comparison);
-    comparison.fair = fair_runs;
-  } else {
-    describe_duct(comparison);
-    comparison.fair =
-        "The steady profiles are exact, and any run may be held against them. How a flow stops has no closed "
-        "form, but a bound "
-        "that no exact material can pass. Under a force below yield a regularised fluid creeps for ever at a "
-        "speed that its "
-        "law alone fixes: compare it with that speed, and only what is beyond it with the solver. Codes "
-        "agree on velocity "
-        "profiles long before they agree on arrest: judge by both.";
-  }
+  comparison.apparatus->describe(comparison);
   tell(comparison, Topic::cost, cost_sentence(comparison));
 }
 

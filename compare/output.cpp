@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/comparison.h"
 #include "compare/comparison_page.h"
 #include "compare/fields/section.h"
@@ -17,57 +18,10 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json scaled(const std::optional<double>& value, double scale = 1.0) {
-  return value && std::isfinite(*value) ? Json(*value * scale) : Json(nullptr);
-}
-
-Json measures_json(const RunView& view, scenes::Kind kind) {
+Json measures_json(const RunView& view, const ApparatusReport& apparatus) {
   const Measures& m = view.measures;
   Json json = {{"end_s", scaled(m.end)}};
-  if (kind == scenes::Kind::slump) {
-    json["spread_end_mm"] = scaled(m.gauge_end, 1e3);
-    json["spread_end_uncertainty_mm"] = scaled(m.uncertainty, 1e3);
-    json["spread_end_uncertainty_source"] = m.uncertainty_source;
-    // By their names of the standard cone: at half and at twice the depth that `thresholds` has.
-    json["spread_end_at_1.5mm_mm"] = scaled(m.spread_at_half, 1e3);
-    json["spread_end_at_6mm_mm"] = scaled(m.spread_at_twice, 1e3);
-    json["centre_end_mm"] = scaled(m.centre_depth, 1e3);
-    json["rest_declared_s"] = scaled(m.rest_declared);
-    json["growth_to_come_mm"] = scaled(m.growth_to_come, 1e3);
-    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
-    json["rest_by_spread_rate_s"] = scaled(m.rest_by_spread_rate);
-    json["overshoot_reference_run"] = m.overshoot_reference_run;
-    json["overshoot_reference_mm"] = scaled(m.overshoot_reference, 1e3);
-    for (const auto& [time, value] : m.overshoot)
-      json[fmt::format("overshoot_at_{:g}s_mm", time)] = 1e3 * value;
-    json["residual_mm_s"] = scaled(m.residual, 1e3);
-    json["residual_scatter_mm"] = scaled(m.residual_scatter, 1e3);
-    json["predicted_creep_mm_s"] = scaled(m.predicted_creep, 1e3);
-    json["approach_to_rest_least_mm_s"] = scaled(m.approach_least, 1e3);
-    json["approach_to_rest_most_mm_s"] = scaled(m.approach_most, 1e3);
-    json["arbitrary_stop_lowest_mm"] = scaled(m.stop_lowest, 1e3);
-    json["arbitrary_stop_highest_mm"] = scaled(m.stop_highest, 1e3);
-  } else if (kind != scenes::Kind::duct) {
-    for (const Reading& reading : readings_of(kind)) {
-      const auto found = m.readings.find(reading.quantity);
-      if (found == m.readings.end()) continue;
-      json[reading.quantity] = scaled(found->second.value);
-      json[reading.quantity + "_uncertainty"] = scaled(found->second.uncertainty);
-    }
-    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
-    json["residual_mm_s"] = scaled(m.residual, 1e3);
-    json["overshoot_reference_run"] = m.overshoot_reference_run;
-  } else {
-    json["plug_velocity_end_m_s"] = scaled(m.gauge_end);
-    json["stop_after_step_s"] = scaled(m.stop_after_step);
-    json["stopping_time_bound_s"] = scaled(m.stopping_bound);
-    json["rest_by_shear_rate_s"] = scaled(m.rest_by_shear_rate);
-    json["residual_m_s"] = scaled(m.residual);
-    json["residual_scatter_m_s"] = scaled(m.residual_scatter);
-    json["predicted_creep_m_s"] = scaled(m.predicted_creep);
-    json["arbitrary_stop_lowest_m_s"] = scaled(m.stop_lowest);
-    json["arbitrary_stop_highest_m_s"] = scaled(m.stop_highest);
-  }
+  json.update(apparatus.measures_json(m));
   json["residual_cause"] = to_string(m.cause);
   json["volume_drift"] = scaled(m.volume_drift);
   json["mass_drift"] = scaled(m.mass_drift);
@@ -81,8 +35,8 @@ Json measures_json(const RunView& view, scenes::Kind kind) {
 Json square_json(const Comparison& comparison) {
   if (!comparison.square) return nullptr;
   const Square& square = *comparison.square;
-  const double scale = gauge_of(comparison.kind).shown;
-  const std::string unit = gauge_of(comparison.kind).suffix();
+  const double scale = comparison.apparatus->gauge().shown;
+  const std::string unit = comparison.apparatus->gauge().suffix();
   const auto label = [&](const std::optional<std::size_t>& run) {
     return run ? Json(comparison.runs[*run].label) : Json();
   };
@@ -119,7 +73,7 @@ std::string quoted(const std::string& text) {
   return '"' + escaped + '"';
 }
 
-std::string cell(const std::optional<double>& value) {
+std::string csv_cell(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.17g}", *value) : "";
 }
 
@@ -137,8 +91,8 @@ std::string gauge_csv(const Comparison& comparison) {
     text += fmt::format("{:.17g}", i * step);
     for (const RunView& view : comparison.runs) {
       auto value = view.gauge_at(i * step);
-      if (value) *value *= gauge_of(comparison.kind).shown;
-      text += ',' + cell(value);
+      if (value) *value *= comparison.apparatus->gauge().shown;
+      text += ',' + csv_cell(value);
     }
     text += '\n';
   }
@@ -146,20 +100,35 @@ std::string gauge_csv(const Comparison& comparison) {
 }
 
 std::string profiles_csv(const Comparison& comparison) {
-  std::string text = header(comparison, comparison.radial                       ? "time_s,r_m"
-                                        : comparison.kind == scenes::Kind::duct ? "time_s,y_m"
-                                                                                : "time_s,x_m");
+  std::string text = header(comparison, comparison.radial                   ? "time_s,r_m"
+                                        : comparison.apparatus->has_depth() ? "time_s,x_m"
+                                                                            : "time_s,y_m");
   for (const double time : comparison.frames) {
     std::vector<std::optional<std::vector<double>>> columns;
     for (const RunView& view : comparison.runs) columns.push_back(view.profile(time, comparison.grid));
     for (std::size_t i = 0; i < comparison.grid.size(); ++i) {
       text += fmt::format("{:.17g},{:.17g}", time, comparison.grid[i]);
       for (const auto& column : columns)
-        text += ',' + cell(column ? std::optional((*column)[i]) : std::nullopt);
+        text += ',' + csv_cell(column ? std::optional((*column)[i]) : std::nullopt);
       text += '\n';
     }
   }
   return text;
+}
+
+/// The name of the depth at which a gauge finds its edge; none where it has no edge.
+const char* depth_key(scenes::MainGauge judged_by) {
+  switch (judged_by) {
+    case scenes::MainGauge::spread:
+      return "spread_depth_mm";
+    case scenes::MainGauge::front:
+      return "front_depth_mm";
+    case scenes::MainGauge::discharge:
+      return "light_depth_mm";
+    case scenes::MainGauge::velocity:
+      break;
+  }
+  return nullptr;
 }
 
 std::string measures_csv(const Json& json) {
@@ -175,7 +144,7 @@ std::string measures_csv(const Json& json) {
     for (const Json& column : json["measure_columns"]) {
       text += ',';
       const Json value = run["measures"].value(column.get<std::string>(), Json());
-      if (value.is_number()) text += cell(value.get<double>());
+      if (value.is_number()) text += csv_cell(value.get<double>());
       if (value.is_string()) text += quoted(value.get<std::string>());
     }
     text += '\n';
@@ -186,12 +155,12 @@ std::string measures_csv(const Json& json) {
 }  // namespace
 
 Json to_json(const Comparison& comparison) {
-  const Gauge& gauge = gauge_of(comparison.kind);
+  const Gauge& gauge = comparison.apparatus->gauge();
   const Thresholds& o = comparison.thresholds;
   Json json = {{"format", "flowrest comparison"},
                {"format_version", 1},
                {"title", comparison.title},
-               {"kind", scenes::to_string(comparison.kind)},
+               {"kind", comparison.apparatus->name()},
                {"findings", Json::array()},
                {"missing", comparison.missing},
                {"notes", comparison.notes},
@@ -203,12 +172,8 @@ Json to_json(const Comparison& comparison) {
                  {"rate_window_s", o.rate_window},
                  {"residual_window_s", o.residual_window},
                  {"creep_factor", o.creep_factor}}}};
-  if (comparison.kind != scenes::Kind::duct) {
-    const char* depth = comparison.kind == scenes::Kind::slump      ? "spread_depth_mm"
-                        : comparison.kind == scenes::Kind::v_funnel ? "light_depth_mm"
-                                                                    : "front_depth_mm";
-    json["thresholds"][depth] = 1e3 * comparison.gauges.edge_depth(comparison.kind);
-  }
+  if (const char* depth = depth_key(comparison.apparatus->judged_by()))
+    json["thresholds"][depth] = 1e3 * comparison.apparatus->edge_depth(comparison.gauges);
   const char* topics[] = {"opening", "stop", "apart", "cause", "cost", "context"};
   for (const Finding& finding : comparison.findings)
     json["findings"].push_back({{"topic", topics[static_cast<int>(finding.topic)]}, {"text", finding.text}});
@@ -226,7 +191,7 @@ Json to_json(const Comparison& comparison) {
                 {"under_resolved", view.doubt.under_resolved},
                 {"trouble", view.trouble},
                 {"walls_differ", view.walls_differ},
-                {"measures", measures_json(view, comparison.kind)},
+                {"measures", measures_json(view, *comparison.apparatus)},
                 {"made_by", provenance_json(view)}};
     for (const auto& [name, value] : run["measures"].items())
       if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
@@ -234,11 +199,10 @@ Json to_json(const Comparison& comparison) {
   }
   json["measure_columns"] = columns;
   const double scale = gauge.shown;
-  const std::string difference = (comparison.kind == scenes::Kind::duct ? "plug_velocity" : gauge.key) +
-                                 std::string("_difference") + gauge.suffix();
-  // Norms are of depths, or of a duct's velocities.
-  const double norm = comparison.kind == scenes::Kind::duct ? 1.0 : 1e3;
-  const std::string unit = comparison.kind == scenes::Kind::duct ? "_m_s" : "_mm";
+  const std::string difference = gauge.json_name() + "_difference" + gauge.suffix();
+  // Norms are of depths, or of velocities.
+  const double norm = comparison.apparatus->has_depth() ? 1e3 : 1.0;
+  const std::string unit = comparison.apparatus->has_depth() ? "_mm" : "_m_s";
   json["pairs"] = Json::array();
   for (const Pair& pair : comparison.pairs) {
     Json entry = {{"run", comparison.runs[pair.run].label},
@@ -262,8 +226,7 @@ Json to_json(const Comparison& comparison) {
     Json values = Json::array();
     for (const double stop : comparison.stops) values.push_back(scaled(view.gauge_at(stop), scale));
     json["arbitrary_stops"]["runs"].push_back(
-        {{"label", view.label},
-         {(comparison.kind == scenes::Kind::duct ? "plug_velocity" : gauge.key) + gauge.suffix(), values}});
+        {{"label", view.label}, {gauge.json_name() + gauge.suffix(), values}});
   }
   json["provenance"] = runs::provenance();
   return json;
@@ -279,7 +242,7 @@ void write_comparison(const Comparison& comparison, const std::filesystem::path&
   runs::write_atomically(report / "comparison.json",
                          json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
   runs::write_atomically(report / "measures.csv", measures_csv(json));
-  runs::write_atomically(report / (gauge_of(comparison.kind).key + ".csv"), gauge_csv(comparison));
+  runs::write_atomically(report / (comparison.apparatus->gauge().key + ".csv"), gauge_csv(comparison));
   runs::write_atomically(report / "profiles.csv", profiles_csv(comparison));
   runs::write_atomically(report / "index.html", page);
 }

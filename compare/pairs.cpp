@@ -1,5 +1,7 @@
 #include "compare/pairs.h"
 
+#include "compare/apparatus/apparatus.h"
+
 namespace flowrest::compare {
 
 namespace {
@@ -14,7 +16,7 @@ std::string pair_kind(const RunView& run, const RunView& reference) {
 }  // namespace
 
 void compare_pairs(Comparison& comparison) {
-  const double floor = comparison.kind == scenes::Kind::duct ? 0.0 : 0.01 * comparison.grain.length;
+  const double floor = comparison.apparatus->has_depth() ? 0.01 * comparison.grain.length : 0.0;
   for (std::size_t i = 0; i < comparison.runs.size(); ++i)
     for (std::size_t j = 0; j < comparison.runs.size(); ++j) {
       const RunView& run = comparison.runs[i];
@@ -22,7 +24,7 @@ void compare_pairs(Comparison& comparison) {
       if (run.exact || (!reference.exact && j >= i)) continue;
       Pair pair{i, j, pair_kind(run, reference), {}};
       std::vector<double> times = comparison.times;
-      if (reference.exact && comparison.kind == scenes::Kind::duct) {
+      if (reference.exact && !comparison.apparatus->has_depth()) {
         times.clear();
         for (const auto& profile : reference.run.profiles) times.push_back(profile.time);
       }

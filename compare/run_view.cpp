@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
 #include "runs/command.h"
@@ -19,17 +20,15 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// The scene's gauge: from the history, or made of the profiles where the history lacks it.
-Series gauge_series(const runs::Run& run, scenes::Kind kind) {
-  const Gauge& gauge = gauge_of(kind);
+Series gauge_series(const runs::Run& run, const ApparatusReport& apparatus) {
+  const Gauge& gauge = apparatus.gauge();
   Series series = column(run, gauge.column, gauge.si);
   const double spread_depth = runs::gauges_of(run).spread_depth;
-  if (!series.empty() || run.history.has(gauge.column) ||
-      (kind != scenes::Kind::slump && kind != scenes::Kind::duct))
-    return series;
+  const bool in_profiles = apparatus.spreads() || !apparatus.has_depth();
+  if (!series.empty() || run.history.has(gauge.column) || !in_profiles) return series;
   for (const auto& profile : run.profiles) {
-    const double value = kind == scenes::Kind::slump
-                             ? runs::spread(profile.coordinate, profile.value, spread_depth)
-                             : *std::max_element(profile.value.begin(), profile.value.end());
+    const double value = apparatus.spreads() ? runs::spread(profile.coordinate, profile.value, spread_depth)
+                                             : *std::max_element(profile.value.begin(), profile.value.end());
     if (!std::isfinite(value)) continue;
     series.time.push_back(profile.time);
     series.value.push_back(value);
@@ -38,13 +37,13 @@ Series gauge_series(const runs::Run& run, scenes::Kind kind) {
 }
 
 /// Whether the last row of the history has the gauge, and it reads nothing.
-bool ends_unread(const runs::Run& run, scenes::Kind kind) {
-  const std::string& name = gauge_of(kind).column;
+bool ends_unread(const runs::Run& run, const Gauge& gauge) {
+  const std::string& name = gauge.column;
   return run.history.has(name) && run.history.rows() > 0 && std::isnan(run.history.at(name).back());
 }
 
-/// Duct profiles are compared about the mid-plane; solvers may count y from the lower plate.
-void centre_duct_profiles(runs::Run& run) {
+/// Profiles of velocity are compared about the mid-plane; solvers may count y from the lower plate.
+void centre_profiles(runs::Run& run) {
   const auto height = number(run.info, "/settings/geometry/height");
   for (auto& profile : run.profiles) {
     if (!height || profile.coordinate.empty() || profile.coordinate.back() <= 0.51 * *height) continue;
@@ -53,8 +52,7 @@ void centre_duct_profiles(runs::Run& run) {
 }
 
 std::vector<double> on_grid(const runs::Profile& profile, const std::vector<double>& grid,
-                            const std::string& kind) {
-  const bool radial = kind == "slump";
+                            const ApparatusReport& apparatus) {
   std::vector<double> values;
   values.reserve(grid.size());
   const auto& x = profile.coordinate;
@@ -62,19 +60,19 @@ std::vector<double> on_grid(const runs::Profile& profile, const std::vector<doub
     double value = 0.0;
     // A profile's last value stands up to the end of its ring or strip: where there is a wall, depth does not
     // fall to it.
-    const double beyond = kind != "duct" && x.size() > 1 ? 0.5 * (x.back() - x[x.size() - 2]) : 0.0;
+    const double beyond = apparatus.has_depth() && x.size() > 1 ? 0.5 * (x.back() - x[x.size() - 2]) : 0.0;
     if (x.empty() || g > x.back() + beyond) {
       value = 0.0;
     } else if (g > x.back()) {
       value = profile.value.back();
     } else if (g >= x.front()) {
       value = interpolate(x, profile.value, g);
-    } else if (radial && x.size() > 1) {
+    } else if (apparatus.spreads() && x.size() > 1) {
       // Flat on the axis: the parabola in r^2 through the innermost two points.
       value = profile.value[0] +
               (profile.value[0] - profile.value[1]) * (x[0] * x[0] - g * g) / (x[1] * x[1] - x[0] * x[0]);
     } else {
-      value = kind == "duct" ? 0.0 : profile.value[0];
+      value = apparatus.has_depth() ? profile.value[0] : 0.0;
     }
     values.push_back(value);
   }
@@ -136,8 +134,9 @@ double flocculation_at_rest(const RunView& view) {
   return rate && yield_stress && *yield_stress > 0.0 ? *rate / *yield_stress : 0.0;
 }
 
-RunView view_of(runs::Run run, scenes::Kind kind) {
+RunView view_of(runs::Run run, const ApparatusReport& apparatus) {
   RunView view;
+  view.apparatus = &apparatus;
   view.run = std::move(run);
   const Json& info = view.run.info;
   view.label = view.run.label();
@@ -148,10 +147,10 @@ RunView view_of(runs::Run run, scenes::Kind kind) {
   view.law = laws::law_named(view.model);
   view.fluid = view.law && !laws::can_rest(*view.law);
   view.doubt = runs::doubt_of(word(info, "/verdict"));
-  if (kind == scenes::Kind::duct) centre_duct_profiles(view.run);
+  if (!apparatus.has_depth()) centre_profiles(view.run);
   view.gauges = runs::gauges_of(view.run);
-  view.gauge = gauge_series(view.run, kind);
-  view.unread = ends_unread(view.run, kind);
+  view.gauge = gauge_series(view.run, apparatus);
+  view.unread = ends_unread(view.run, apparatus.gauge());
   view.walls_differ = word(info, "/walls_differ");
   view.shear_rate = column(view.run, "shear_rate_p99_1_s");
   view.trouble = trouble_of(view);
@@ -231,8 +230,8 @@ void check_same_scene(Comparison& comparison) {
 }
 
 void note_gauges(Comparison& comparison) {
-  if (comparison.kind == scenes::Kind::duct) return;
-  const auto depth_of = [&](const RunView& view) { return view.gauges.edge_depth(comparison.kind); };
+  if (!comparison.apparatus->has_depth()) return;
+  const auto depth_of = [&](const RunView& view) { return comparison.apparatus->edge_depth(view.gauges); };
   std::map<double, std::vector<std::string>> by_depth;
   std::vector<std::string> unread;
   for (const RunView& view : comparison.runs) {
@@ -249,7 +248,7 @@ void note_gauges(Comparison& comparison) {
   }
   if (!unread.empty())
     comparison.notes.push_back(fmt::format("Nothing is read of the {} at the end of {}.",
-                                           gauge_of(comparison.kind).name, words::listed(unread)));
+                                           comparison.apparatus->gauge().name, words::listed(unread)));
 }
 
 std::optional<std::string> command_for(const Comparison& comparison, const std::string& solver,
@@ -305,7 +304,7 @@ std::optional<double> RunView::gauge_at(double time) const {
   if (gauge.empty()) return std::nullopt;
   if (!exact && (time < gauge.time.front() - 1e-9 || ((!held || unread) && time > gauge.end() + 1e-9)))
     return std::nullopt;
-  if (exact && run.info["kind"] == "duct") {
+  if (exact && !apparatus->has_depth()) {
     // Each row is the steady state of the stage that ends there.
     const auto row = std::lower_bound(gauge.time.begin(), gauge.time.end(), time - 1e-9);
     return gauge.value[row == gauge.time.end() ? gauge.value.size() - 1
@@ -316,17 +315,16 @@ std::optional<double> RunView::gauge_at(double time) const {
 
 std::optional<std::vector<double>> RunView::profile(double time, const std::vector<double>& grid) const {
   const auto& profiles = run.profiles;
-  const std::string kind = run.info["kind"];
   if (profiles.empty()) return std::nullopt;
   const auto after = std::lower_bound(profiles.begin(), profiles.end(), time - 1e-9,
                                       [](const runs::Profile& p, double t) { return p.time < t; });
   if (after == profiles.end())
-    return held || exact ? std::optional(on_grid(profiles.back(), grid, kind)) : std::nullopt;
-  if (exact || std::abs(after->time - time) <= 1e-9) return on_grid(*after, grid, kind);
+    return held || exact ? std::optional(on_grid(profiles.back(), grid, *apparatus)) : std::nullopt;
+  if (exact || std::abs(after->time - time) <= 1e-9) return on_grid(*after, grid, *apparatus);
   if (after == profiles.begin()) return std::nullopt;
   const auto before = after - 1;
-  auto values = on_grid(*before, grid, kind);
-  const auto later = on_grid(*after, grid, kind);
+  auto values = on_grid(*before, grid, *apparatus);
+  const auto later = on_grid(*after, grid, *apparatus);
   const double weight = (time - before->time) / (after->time - before->time);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * (later[i] - values[i]);
   return values;

@@ -24,7 +24,7 @@ Series column(const runs::Run&, const std::string& name, double scale = 1.0);
 double flocculation_at_rest(const RunView&);
 
 /// The run as the comparison sees it: named, with its gauge and its trouble.
-RunView view_of(runs::Run, scenes::Kind);
+RunView view_of(runs::Run, const ApparatusReport&);
 
 /// Tells runs of the same solver and model apart by the settings in which they differ, else by their folders.
 void make_labels_unique(std::vector<RunView>&);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/run_measures.h"
 #include "compare/run_view.h"
 #include "runs/depth.h"
@@ -51,7 +52,7 @@ double noise_of(const Comparison& comparison, const RunView& view, double time) 
   const double half = 0.5 * scatter_over_rate_window * comparison.thresholds.rate_window;
   if (time < view.gauge.end())
     if (const auto line = trend(view.gauge, time - half, time + half)) noise = line->scatter;
-  if (comparison.kind != scenes::Kind::slump) return noise;
+  if (!comparison.apparatus->spreads()) return noise;
   const Series thin = column(view.run, "spread_1p5_mm", 1e-3), thick = column(view.run, "spread_6_mm", 1e-3);
   if (thin.empty() || thick.empty()) return noise;
   const double sensitivity = thin.at(time) - thick.at(time);

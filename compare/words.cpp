@@ -21,12 +21,12 @@ int decimals_of(double place) { return std::max(0, -static_cast<int>(std::floor(
 
 }  // namespace
 
-Grain grain_of(const scenes::Gauges& gauges, scenes::Kind kind) {
+Grain grain_of(const scenes::Gauges& gauges, scenes::MainGauge judged_by) {
   const scenes::Gauges standard;
   // What falls a little short of a power of ten counts as it.
   const auto power_of_ten = [](double most) { return std::pow(10.0, std::floor(std::log10(most) + 0.05)); };
   Grain grain;
-  grain.length = power_of_ten(gauges.edge_depth(kind) / 3.0);
+  grain.length = power_of_ten(gauges.edge_depth(judged_by) / 3.0);
   grain.speed = power_of_ten(gauges.still_speed / 100.0);
   grain.time *= gauges.rate_window / standard.rate_window;
   return grain;

@@ -17,7 +17,7 @@ struct Grain {
   double time = 5e-3;    ///< s
   int decimals() const;  ///< of a length in mm
 };
-Grain grain_of(const scenes::Gauges&, scenes::Kind);
+Grain grain_of(const scenes::Gauges&, scenes::MainGauge);
 
 std::string spread(double metres, const Grain& = {});  ///< "575 mm", of a small cone "5.42 mm"
 /// With no digit that the uncertainty does not support: "563 ± 8 mm", "620 ± 30 mm"; without one as above.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <variant>
+
 #include "runs/errors.h"
 
 namespace flowrest::elements {
@@ -13,16 +15,20 @@ namespace {
                                    scene.path.string(), what, allowed));
 }
 
-void check_apparatus(const scenes::Scene& scene) {
-  if (scene.kind() != scenes::Kind::slump)
-    refuse(scene, fmt::format("kind = \"{}\"", scenes::to_string(scene.kind())), "\"slump\"");
+/// The cone, which is all that they compute.
+const scenes::Slump& cone_of(const scenes::Scene& scene) {
+  const auto* cone = std::get_if<scenes::Slump>(&scene.geometry.apparatus);
+  if (!cone)
+    refuse(scene, fmt::format("kind = \"{}\"", scenes::name_of(scene.geometry.apparatus)),
+           fmt::format("\"{}\"", scenes::Slump::name));
   const auto dimension = scene.geometry.dimension;
   if (dimension != scenes::Dimension::axisymmetric && dimension != scenes::Dimension::plane)
     refuse(scene, fmt::format("geometry.dimension = \"{}\"", scenes::to_string(dimension)),
            "\"axisymmetric\" or \"plane\"");
-  if (scene.slump().mould_lift_velocity)
+  if (cone->mould_lift_velocity)
     refuse(scene, "a mould that is lifted (geometry.mould_lift_velocity)",
            "a cone released at once, without that key");
+  return *cone;
 }
 
 void check_walls_and_forces(const scenes::Scene& scene) {
@@ -45,10 +51,9 @@ void check_material(const scenes::Scene& scene) {
 }  // namespace
 
 Problem problem_of(const scenes::Scene& scene) {
-  check_apparatus(scene);
+  const auto& cone = cone_of(scene);
   check_walls_and_forces(scene);
   check_material(scene);
-  const auto& cone = scene.slump();
   Problem problem;
   problem.symmetry =
       scene.geometry.dimension == scenes::Dimension::plane ? Symmetry::plane : Symmetry::about_axis;

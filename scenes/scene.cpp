@@ -5,16 +5,15 @@
 
 namespace flowrest::scenes {
 
-double Gauges::edge_depth(Kind kind) const {
-  switch (kind) {
-    case Kind::slump:
+double Gauges::edge_depth(MainGauge gauge) const {
+  switch (gauge) {
+    case MainGauge::spread:
       return spread_depth;
-    case Kind::l_box:
-    case Kind::dam_break:
+    case MainGauge::front:
       return front_depth;
-    case Kind::v_funnel:
+    case MainGauge::discharge:
       return light_depth;
-    case Kind::duct:
+    case MainGauge::velocity:
       break;
   }
   return Gauges{}.spread_depth;
@@ -49,6 +48,10 @@ MainGauge Scene::main_gauge() const { return main_gauge_of(geometry.apparatus); 
 
 double Scene::body_height() const {
   return std::visit([](const auto& a) { return a.body_height(); }, geometry.apparatus);
+}
+
+double Scene::body_size() const {
+  return std::visit([](const auto& a) { return a.body_size(); }, geometry.apparatus);
 }
 
 double Material::bulk_modulus() const { return youngs_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio)); }

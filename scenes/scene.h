@@ -100,8 +100,8 @@ struct Gauges {
   double still_speed = 1e-4;      ///< m/s: a law that can rest, and grows by less, has come to rest
   double rest_shear_rate = 0.05;  ///< 1/s, customarily taken for rest
   double rate_window = 2.0;       ///< s, over which growth is taken
-  /// The depth at which a kind's main gauge finds its edge, m; of a duct, which has none, the standard one.
-  double edge_depth(Kind) const;
+  /// The depth at which a gauge finds its edge, m; of velocities, which have none, the standard one.
+  double edge_depth(MainGauge) const;
   bool operator==(const Gauges&) const = default;
 };
 
@@ -212,6 +212,8 @@ struct Scene {
   MainGauge main_gauge() const;
   /// Height of the material at the start, m.
   double body_height() const;
+  /// By which lengths are carried from one body to another, m: its height, or of a cone the root of its volume.
+  double body_size() const;
   /// Spatial dimension of the computation: 2 for axisymmetric and plane, 3 for the others.
   int spatial_dimension() const {
     return geometry.dimension == Dimension::axisymmetric || geometry.dimension == Dimension::plane ? 2 : 3;

@@ -12,6 +12,7 @@
 #include "runs/run_directory.h"
 #include "scenes/cost.h"
 #include "scenes/names.h"
+#include "scenes/pieces.h"
 #include "scenes/text.h"
 
 namespace flowrest::studies {
@@ -22,11 +23,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double twin_is_coarser = 1.6;
-
-/// The size of a scene's body, m.
-double length_of(const scenes::Scene& scene) {
-  return scene.kind() == scenes::Kind::slump ? std::cbrt(scene.slump().volume()) : scene.body_height();
-}
 
 std::string percent(double fraction) { return compare::words::percent(fraction); }
 
@@ -65,10 +61,10 @@ Choice choice_from(const std::string& name, const char* what) {
                                    scenes::joined(scenes::all_names<Choice>())));
 }
 
-/// A cell that suits the scene: in a duct a whole number of them lies between the plates.
+/// A cell that suits the scene: between plates lies a whole number of them.
 double suited_cell(const scenes::Scene& scene, double cell) {
-  if (scene.kind() != scenes::Kind::duct) return cell;
-  return scene.duct().height / std::ceil(scene.duct().height / cell * (1.0 - 1e-9));
+  const auto height = scenes::pieces_of(scene).whole_cells_over;
+  return height ? *height / std::ceil(*height / cell * (1.0 - 1e-9)) : cell;
 }
 
 std::vector<std::string> settings_with(const KnownPoint& point, double cell) {
@@ -88,8 +84,8 @@ std::vector<Candidate> candidates_for(const std::vector<Knowledge>& all, const s
   std::vector<Candidate> candidates;
   for (const Knowledge& k : all)
     for (const KnownPoint& p : k.points)
-      if (k.kind == scene.kind() && k.dimension == scene.geometry.dimension &&
-          p.model == scene.material.model)
+      if (k.apparatus == scenes::name_of(scene.geometry.apparatus) &&
+          k.dimension == scene.geometry.dimension && p.model == scene.material.model)
         candidates.push_back({&k, &p});
   return candidates;
 }
@@ -107,14 +103,15 @@ std::string with_own_cell(const scenes::Scene& scene) {
 [[noreturn]] void nothing_known(const std::vector<Knowledge>& all, const scenes::Scene& scene) {
   std::string known;
   for (const Knowledge& k : all)
-    known += fmt::format("{}{} ({}, by the study {})", known.empty() ? "" : "; ", scenes::to_string(k.kind),
+    known += fmt::format("{}{} ({}, by the study {})", known.empty() ? "" : "; ", k.apparatus,
                          scenes::to_string(k.dimension), k.study);
   throw scenes::SceneError(fmt::format(
       "{}: no study has measured what accuracy a {} ({}, {}) costs, so no settings can be chosen for one; "
       "known: "
       "{}. Write a study of such scenes and run it with --keep, or give the cell yourself: `{}`",
-      scene.path.string(), scenes::to_string(scene.kind()), scenes::to_string(scene.geometry.dimension),
-      scenes::to_string(scene.material.model), known.empty() ? "nothing" : known, with_own_cell(scene)));
+      scene.path.string(), scenes::name_of(scene.geometry.apparatus),
+      scenes::to_string(scene.geometry.dimension), scenes::to_string(scene.material.model),
+      known.empty() ? "nothing" : known, with_own_cell(scene)));
 }
 
 scenes::Scene with_settings(const scenes::Scene& scene, const std::vector<std::string>& set) {
@@ -151,9 +148,9 @@ Json knowledge_json(const Results& results) {
           {"study", results.study.name},
           {"cut", results.cut},
           {"scene", results.study.scene},
-          {"kind", scenes::to_string(scene->kind())},
+          {"kind", scenes::name_of(scene->geometry.apparatus)},
           {"dimension", scenes::to_string(scene->geometry.dimension)},
-          {"length_m", length_of(*scene)},
+          {"length_m", scene->body_size()},
           {"quantity", quantity},
           {"reference", reference->second.words},
           {"relative_uncertainty", *reference->second.uncertainty / std::abs(reference->second.value)},
@@ -168,7 +165,10 @@ Knowledge parse_knowledge(const Json& json) {
   k.cut = named<std::string>(json, "cut");
   k.scene = named<std::string>(json, "scene");
   k.quantity = named<std::string>(json, "quantity");
-  k.kind = choice_from<scenes::Kind>(named<std::string>(json, "kind"), "kind of scene");
+  k.apparatus = named<std::string>(json, "kind");
+  if (!scenes::apparatus_named(k.apparatus))
+    throw runs::RunError(fmt::format("the kind of scene '{}' is unknown; allowed: {}", k.apparatus,
+                                     scenes::joined(scenes::apparatus_names())));
   k.dimension = choice_from<scenes::Dimension>(named<std::string>(json, "dimension"), "dimension");
   k.length = named<double>(json, "length_m");
   k.uncertainty = named<double>(json, "relative_uncertainty");
@@ -247,7 +247,7 @@ Choice choose(const std::vector<Knowledge>& all, const scenes::Scene& scene, dou
   const KnownPoint& p = *cheapest->point;
   Choice choice;
   choice.quantity = k.quantity;
-  choice.cell = suited_cell(scene, p.cell * length_of(scene) / k.length);
+  choice.cell = suited_cell(scene, p.cell * scene.body_size() / k.length);
   choice.twin_cell = suited_cell(scene, twin_is_coarser * choice.cell);
   choice.set = settings_with(p, choice.cell);
   choice.twin_set = settings_with(p, choice.twin_cell);

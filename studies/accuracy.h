@@ -24,10 +24,9 @@ struct KnownPoint {
   double work = 0.0;   ///< s, what it was expected to cost: the measure by which its cost is carried over
 };
 
-/// What a study knows of a kind of scene.
+/// What a study knows of scenes of one apparatus.
 struct Knowledge {
-  std::string study, cut, scene, quantity;
-  scenes::Kind kind = scenes::Kind::slump;
+  std::string study, cut, scene, quantity, apparatus;
   scenes::Dimension dimension = scenes::Dimension::axisymmetric;
   double length = 0.0;       ///< m, of the scene's body: cells are carried over in proportion to it
   double uncertainty = 0.0;  ///< of the reference, relative

@@ -17,6 +17,7 @@ Knowledge made_up() {
   k.study = "made-up";
   k.scene = "roussel-slump";
   k.quantity = "spread_mm";
+  k.apparatus = "slump";
   k.length = std::cbrt(scenes::load_scene("roussel-slump").slump().volume());
   k.uncertainty = 0.005;
   k.made_by = "nobody";
@@ -107,7 +108,7 @@ TEST(Accuracy, EveryKindOfSceneMayHaveItsKnowledgeAndIsHeldByTheQuantityThatIsKn
                                             {"cut", ""},
                                             {"scene", name},
                                             {"quantity", quantity},
-                                            {"kind", scenes::to_string(scene.kind())},
+                                            {"kind", scenes::name_of(scene.geometry.apparatus)},
                                             {"dimension", scenes::to_string(scene.geometry.dimension)},
                                             {"length_m", scene.body_height()},
                                             {"relative_uncertainty", 0.001},

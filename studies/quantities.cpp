@@ -84,16 +84,23 @@ const runs::Profile* profile_at(const runs::Run& run, const std::optional<double
   return found;
 }
 
+/// By what runs of this one's apparatus are judged; nothing where it is unknown.
+std::optional<scenes::MainGauge> judged_by(const runs::Run& run) {
+  const auto* apparatus = scenes::apparatus_named(run.info.at("kind").get<std::string>());
+  return apparatus ? std::optional(scenes::main_gauge_of(*apparatus)) : std::nullopt;
+}
+
 bool is_radial(const runs::Run& run) {
-  if (run.info.at("kind") != "slump") return false;
+  if (judged_by(run) != scenes::MainGauge::spread) return false;
   const auto settings = run.info.find("settings");
   if (settings == run.info.end() || !settings->contains("geometry")) return true;
   return (*settings)["geometry"].value("dimension", "axisymmetric") != "plane";
 }
 
-/// Reference coordinates count from the middle of a duct or from its plate; both are laid from the middle.
+/// Reference coordinates count from the middle between plates or from one; both are laid from the middle.
 std::vector<double> from_middle(const runs::Run& run, const std::vector<double>& coordinate) {
-  if (run.info.at("kind") != "duct" || coordinate.empty() || coordinate.front() < 0.0) return coordinate;
+  if (judged_by(run) != scenes::MainGauge::velocity || coordinate.empty() || coordinate.front() < 0.0)
+    return coordinate;
   const auto settings = run.info.find("settings");
   if (settings == run.info.end()) return coordinate;
   const double height = (*settings)["geometry"].value("height", 0.0);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runs/gauges.h"
+#include "scenes/pieces.h"
 #include "scenes/step_limits.h"
 
 namespace flowrest::studies {
@@ -96,9 +97,10 @@ std::string too_fast(const runs::Run& run, const scenes::Scene& scene) {
 
 std::string beyond_the_domain(const runs::Run& run, const scenes::Scene& scene) {
   const auto* spread = column(run, "spread_mm");
-  if (scene.kind() != scenes::Kind::slump || !spread) return {};
+  const auto domain = scenes::pieces_of(scene).domain;
+  if (!domain || !spread) return {};
   for (const double v : *spread)
-    if (1e-3 * v > 2.0 * scene.slump().domain_radius * 1.05)
+    if (1e-3 * v > 2.0 * domain->radius * 1.05)
       return fmt::format("its spread of {:.3g} mm lies beyond the domain", v);
   return {};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/fields/states.h"
 #include "compare/run_view.h"
 #include "runs/command.h"
@@ -263,8 +264,8 @@ std::optional<report::Section> section_of(const Comparison& comparison, const Cu
 std::vector<report::Section> sections_of(const Comparison& comparison, std::size_t most_times,
                                          std::size_t budget) {
   std::vector<report::Section> sections;
-  if (comparison.kind == scenes::Kind::duct) return sections;
-  const bool level = comparison.kind == scenes::Kind::l_box &&
+  if (!comparison.apparatus->has_depth()) return sections;
+  const bool level = comparison.apparatus->seen_from_above() &&
                      std::any_of(comparison.runs.begin(), comparison.runs.end(),
                                  [](const RunView& view) { return !view.exact && is_solid(view); });
   const std::size_t each = level ? budget / 2 : budget;

@@ -18,6 +18,7 @@
 #include <fstream>
 #include <memory>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/run_view.h"
 
 namespace flowrest::compare::fields {
@@ -34,8 +35,7 @@ constexpr std::pair<const char*, const char*> particle_arrays[] = {
 /// Where an upright section lies across: on the plane of symmetry, which a half and a quarter are cut along.
 double section_plane(const RunView& view, double lowest, double highest) {
   const std::string dimension = word(view.run.info, "/settings/geometry/dimension");
-  const bool cut =
-      dimension == "half" || dimension == "quarter" || view.run.info.value("kind", "") == "slump";
+  const bool cut = dimension == "half" || dimension == "quarter" || view.apparatus->spreads();
   return cut ? std::clamp(0.0, lowest, highest) : 0.5 * (lowest + highest);
 }
 

@@ -4,33 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "runs/gauges.h"
 
 namespace flowrest::compare {
 
 namespace {
-
-using scenes::Kind;
-
-Gauge millimetres(const std::string& name, const std::string& column, const std::string& more,
-                  const std::string& less, const std::string& caption) {
-  const std::string key = column.substr(0, column.size() - 3);
-  return {name, key, column, "mm", 1e-3, 1e3, more, less, caption};
-}
-
-const Gauge flocculation = {
-    "mean flocculation state λ",
-    "flocculation",
-    "flocculation_mean",
-    "",
-    1.0,
-    1.0,
-    "higher",
-    "lower",
-    "λ of Roussel's law, the mean over the mass: it falls while flow breaks the flocs and "
-    "grows while they rest. A run that has come to rest goes on by the law: the dotted tail."};
 
 /// Where the front can go no further, mm from the gate or from the back wall, as the front itself is counted.
 std::optional<double> end_wall(const runs::Run& run) {
@@ -58,90 +37,47 @@ std::optional<double> first_passing(const runs::Run& run, const std::string& col
 
 }  // namespace
 
-std::string Gauge::suffix() const {
-  return unit == "mm" ? "_mm" : unit == "m/s" ? "_m_s" : unit == "%" ? "_percent" : "";
+Gauge millimetres(const std::string& name, const std::string& column, const std::string& more,
+                  const std::string& less, const std::string& caption) {
+  const std::string key = column.substr(0, column.size() - 3);
+  return {name, key, column, "mm", 1e-3, 1e3, more, less, caption};
 }
 
-std::string Gauge::caption_for(const scenes::Gauges& gauges, Kind kind) const {
-  return fmt::format(fmt::runtime(caption), fmt::arg("depth", 1e3 * gauges.edge_depth(kind)),
-                     fmt::arg("length", 1e3 * gauges.end_length));
-}
-
-const Gauge& gauge_of(Kind kind) {
-  static const Gauge spread = millimetres("spread", "spread_mm", "wider", "narrower",
-                                          "Spread: twice the radius at which the depth falls through "
-                                          "{depth:g} mm. A thin dotted tail continues a "
-                                          "run that has come to rest.");
-  static const Gauge velocity = {
-      "plug velocity",
-      "velocity",
-      "plug_velocity_m_s",
-      "m/s",
+const Gauge& flocculation() {
+  static const Gauge gauge = {
+      "mean flocculation state λ",
+      "flocculation",
+      "flocculation_mean",
+      "",
       1.0,
       1.0,
-      "faster",
-      "slower",
-      "Velocity of the plug. The exact line is the steady state of each stage of the "
-      "force."};
-  static const Gauge front_of_box = millimetres(
-      "front", "front_mm", "further", "shorter",
-      "Front: the distance from the gate at which the depth falls through {depth:g} mm; it ends at the end "
-      "wall. A thin dotted tail continues a run that has come to rest.");
-  static const Gauge front_of_dam = millimetres("front", "front_mm", "further", "shorter",
-                                                "Front: the distance from the back wall at which the depth "
-                                                "falls through {depth:g} mm; it ends at the end wall.");
-  static const Gauge discharged = {"discharged fraction",
-                                   "discharged",
-                                   "discharged_fraction",
-                                   "%",
-                                   1.0,
-                                   100.0,
-                                   "more",
-                                   "less",
-                                   "Discharged: the share of the mass that is below the outlet."};
-  switch (kind) {
-    case Kind::slump:
-      return spread;
-    case Kind::duct:
-      return velocity;
-    case Kind::l_box:
-      return front_of_box;
-    case Kind::dam_break:
-      return front_of_dam;
-    case Kind::v_funnel:
-      return discharged;
-  }
-  throw std::logic_error("a kind of scene without a gauge");
+      "higher",
+      "lower",
+      "λ of Roussel's law, the mean over the mass: it falls while flow breaks the flocs and "
+      "grows while they rest. A run that has come to rest goes on by the law: the dotted tail."};
+  return gauge;
 }
 
-const std::vector<Gauge>& further_gauges(Kind kind) {
+const std::vector<Gauge>& channel_gauges() {
   static const Gauge end = millimetres("height at the end wall", "end_height_mm", "higher", "lower",
                                        "The mean depth over the last {length:g} mm before the end wall.");
   static const Gauge start = millimetres("height at the back wall", "start_height_mm", "higher", "lower",
                                          "The mean depth over the first {length:g} mm.");
-  static const Gauge height = millimetres("height in the middle", "height_mm", "higher", "lower",
-                                          "The depth on the axis of the slump.");
-  static const Gauge sight = millimetres("thinnest line of sight", "thinnest_sight_mm", "thicker", "thinner",
-                                         "The least material on any line of sight through the outlet: light "
-                                         "is seen once it is below {depth:g} mm.");
-  static const std::vector<Gauge> of_slump = {height, flocculation}, of_duct = {flocculation},
-                                  of_box = {end, start, flocculation}, of_funnel = {sight, flocculation};
-  switch (kind) {
-    case Kind::slump:
-      return of_slump;
-    case Kind::duct:
-      return of_duct;
-    case Kind::l_box:
-    case Kind::dam_break:
-      return of_box;
-    case Kind::v_funnel:
-      return of_funnel;
-  }
-  throw std::logic_error("a kind of scene without gauges");
+  static const std::vector<Gauge> all = {end, start, flocculation()};
+  return all;
 }
 
-bool grows_to_rest(Kind kind) {
-  return kind == Kind::slump || kind == Kind::l_box || kind == Kind::dam_break;
+std::string Gauge::suffix() const {
+  return unit == "mm" ? "_mm" : unit == "m/s" ? "_m_s" : unit == "%" ? "_percent" : "";
+}
+
+std::string Gauge::json_name() const {
+  return column.ends_with(suffix()) ? column.substr(0, column.size() - suffix().size()) : key;
+}
+
+std::string Gauge::caption_for(const scenes::Gauges& gauges, scenes::MainGauge judged_by) const {
+  return fmt::format(fmt::runtime(caption), fmt::arg("depth", 1e3 * gauges.edge_depth(judged_by)),
+                     fmt::arg("length", 1e3 * gauges.end_length));
 }
 
 Reading reading_named(const std::string& quantity) {
@@ -163,29 +99,6 @@ Reading reading_named(const std::string& quantity) {
                            : quantity.ends_with("_s")   ? "s"
                                                         : "";
   return {quantity, quantity, unit};
-}
-
-const std::vector<Reading>& readings_of(Kind kind) {
-  static const std::vector<Reading> slump = {reading_named("spread_mm"), reading_named("rest_s")},
-                                    duct = {reading_named("plug_velocity_m_s"), reading_named("rest_s")},
-                                    box = {reading_named("front_mm"), reading_named("arrival_s"),
-                                           reading_named("end_height_mm"), reading_named("rest_s")},
-                                    dam = {reading_named("front_mm"), reading_named("arrival_s")},
-                                    funnel = {reading_named("light_s"), reading_named("discharged_fraction"),
-                                              reading_named("rest_s")};
-  switch (kind) {
-    case Kind::slump:
-      return slump;
-    case Kind::duct:
-      return duct;
-    case Kind::l_box:
-      return box;
-    case Kind::dam_break:
-      return dam;
-    case Kind::v_funnel:
-      return funnel;
-  }
-  throw std::logic_error("a kind of scene without readings");
 }
 
 std::optional<double> read(const runs::Run& run, const std::string& quantity) {

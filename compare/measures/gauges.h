@@ -7,7 +7,7 @@
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
-/// What is read off a run, by kind of scene: the quantities that reports draw against time, and the single
+/// What is read off a run: the quantities that reports draw against time, and the single
 /// numbers they state. One definition for comparison and validation.
 namespace flowrest::compare {
 
@@ -22,19 +22,20 @@ struct Gauge {
   std::string more, less;  ///< how a run stands to another: "wider", "narrower"
   /// What it is, for figures; {depth} and {length} stand for what it is read at, in mm.
   std::string caption = {};
-  std::string caption_for(const scenes::Gauges&, scenes::Kind) const;
+  std::string caption_for(const scenes::Gauges&, scenes::MainGauge) const;
   /// Of columns and JSON keys: "_mm", "_m_s", "_percent".
   std::string suffix() const;
+  /// In JSON keys, before what it is read for and its suffix: "spread", "plug_velocity".
+  std::string json_name() const;
 };
 
-/// The gauge by which runs of a kind are told apart.
-const Gauge& gauge_of(scenes::Kind);
-
-/// What else is worth a figure against time; a run need not have it.
-const std::vector<Gauge>& further_gauges(scenes::Kind);
-
-/// Whether the gauge is a length that grows until the material is at rest.
-bool grows_to_rest(scenes::Kind);
+/// A gauge that is a length in millimetres.
+Gauge millimetres(const std::string& name, const std::string& column, const std::string& more,
+                  const std::string& less, const std::string& caption);
+/// The mean state of flocculation, of whatever is thixotropic.
+const Gauge& flocculation();
+/// What is worth a figure beside the front of what runs along a channel.
+const std::vector<Gauge>& channel_gauges();
 
 /// A number read off a run.
 struct Reading {
@@ -44,10 +45,7 @@ struct Reading {
   std::string shown() const { return name + (unit.empty() ? "" : " (" + unit + ")"); }
 };
 
-/// The readings that say what a run of this kind came to.
-const std::vector<Reading>& readings_of(scenes::Kind);
-
-/// A quantity by its name, of whatever kind; a column of history.csv speaks for itself.
+/// A quantity by its name, of whatever apparatus; a column of history.csv speaks for itself.
 Reading reading_named(const std::string& quantity);
 
 /// arrival_s: when the front reaches the end of channel or tank; light_s: when light is first seen through a

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compare/apparatus/apparatus.h"
 #include "runs/depth.h"
 
 using namespace flowrest;
@@ -54,10 +55,14 @@ TEST(Gauges, WhatReadsNothingIsNeitherAnEventNorAnEnd) {
 }
 
 TEST(Gauges, CaptionsSayWhatTheyAreReadAt) {
-  EXPECT_NE(gauge_of(scenes::Kind::slump).caption_for({}, scenes::Kind::slump).find("falls through 3 mm"),
+  EXPECT_NE(report_of(scenes::Apparatus(scenes::Slump{}))
+                .gauge()
+                .caption_for({}, scenes::MainGauge::spread)
+                .find("falls through 3 mm"),
             std::string::npos);
-  EXPECT_NE(further_gauges(scenes::Kind::l_box)[0]
-                .caption_for({.end_length = 0.005}, scenes::Kind::l_box)
+  EXPECT_NE(report_of(scenes::Apparatus(scenes::LBox{}))
+                .further_gauges()[0]
+                .caption_for({.end_length = 0.005}, scenes::MainGauge::front)
                 .find("last 5 mm"),
             std::string::npos);
 }
@@ -78,13 +83,14 @@ TEST(Gauges, AGridsErrorIsTakenOnToZeroCellSizeAtFirstOrder) {
   EXPECT_NEAR(grid_uncertainty(530.0, 15.0, 520.0, 10.0), 30.0, 1e-12);
 }
 
-TEST(Gauges, EveryKindHasThem) {
-  for (const auto kind : {scenes::Kind::slump, scenes::Kind::duct, scenes::Kind::l_box,
-                          scenes::Kind::v_funnel, scenes::Kind::dam_break}) {
-    EXPECT_FALSE(gauge_of(kind).name.empty());
-    EXPECT_FALSE(further_gauges(kind).empty());
-    EXPECT_FALSE(readings_of(kind).empty());
-  }
-  EXPECT_EQ(gauge_of(scenes::Kind::l_box).suffix(), "_mm");
-  EXPECT_EQ(gauge_of(scenes::Kind::v_funnel).suffix(), "_percent");
+TEST(Gauges, EveryApparatusHasThem) {
+  scenes::for_each_apparatus([](const auto& one) {
+    const ApparatusReport& report = report_of(scenes::Apparatus(one));
+    EXPECT_EQ(report.name(), one.name);
+    EXPECT_FALSE(report.gauge().name.empty());
+    EXPECT_FALSE(report.further_gauges().empty());
+    EXPECT_FALSE(report.readings().empty());
+  });
+  EXPECT_EQ(report_of(scenes::Apparatus(scenes::LBox{})).gauge().suffix(), "_mm");
+  EXPECT_EQ(report_of(scenes::Apparatus(scenes::VFunnel{})).gauge().suffix(), "_percent");
 }

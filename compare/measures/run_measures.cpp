@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
-#include "compare/exact/creep.h"
-#include "compare/exact/film.h"
-#include "compare/exact/solutions.h"
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/gauges.h"
 #include "compare/run_view.h"
 #include "runs/depth.h"
@@ -19,17 +16,6 @@ namespace flowrest::compare {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-/// (from time, force) in ascending time; empty where the run does not say.
-std::vector<std::pair<double, double>> body_force(const RunView& view) {
-  std::vector<std::pair<double, double>> stages;
-  const Json::json_pointer at("/settings/forces/body_force");
-  if (!view.run.info.contains(at)) return stages;
-  for (const Json& stage : view.run.info.at(at))
-    if (stage.is_array() && stage.size() == 2 && stage[0].is_number() && stage[1].is_number())
-      stages.emplace_back(stage[0].get<double>(), stage[1].get<double>());
-  return stages;
-}
 
 /// The regularised fluid a run computed, where it is one and says enough.
 std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
@@ -49,48 +35,10 @@ std::optional<exact::RegularisedFluid> regularised_fluid(const RunView& view) {
   return fluid;
 }
 
-/// A slump of yield-stress material about its axis.
-struct SlumpFacts {
-  exact::Bingham material;
-  double gravity = 0.0;
-  scenes::Slump cone;
-};
-std::optional<SlumpFacts> slump_facts(const RunView& view) {
-  const auto density = setting(view, "/material/density");
-  const auto yield_stress = setting(view, "/material/yield_stress");
-  const auto viscosity = setting(view, "/material/plastic_viscosity");
-  const auto gravity = setting(view, "/forces/gravity");
-  const auto top = setting(view, "/geometry/cone_radius_top");
-  const auto bottom = setting(view, "/geometry/cone_radius_bottom");
-  const auto height = setting(view, "/geometry/cone_height");
-  const auto domain = setting(view, "/geometry/domain_radius");
-  if (!density || !yield_stress || !viscosity || !gravity || !top || !bottom || !height ||
-      !(*yield_stress > 0.0) || !(*gravity > 0.0))
-    return std::nullopt;
-  if (word(view.run.info, "/settings/geometry/dimension") == "plane") return std::nullopt;
-  const double index = setting(view, "/material/flow_index").value_or(1.0);
-  return SlumpFacts{{*density, *yield_stress, *viscosity, index},
-                    *gravity,
-                    scenes::Slump{*height, *top, *bottom, domain.value_or(0.0), 0.0, {}}};
-}
-
-std::optional<double> predicted_creep(const RunView& view, scenes::Kind kind) {
+std::optional<double> predicted_creep(const RunView& view, const ApparatusReport& apparatus) {
   if (!view.fluid) return 0.0;
   const auto fluid = regularised_fluid(view);
-  if (!fluid) return std::nullopt;
-  if (kind != scenes::Kind::slump && kind != scenes::Kind::duct) return std::nullopt;
-  if (kind == scenes::Kind::duct) {
-    const auto height = setting(view, "/geometry/height");
-    const auto stages = body_force(view);
-    if (!height || stages.empty() || stages.back().second * *height > 2.0 * fluid->parameters.yield_stress)
-      return std::nullopt;
-    return exact::duct_creep(*fluid, *height, stages.back().second);
-  }
-  const auto facts = slump_facts(view);
-  if (!facts) return std::nullopt;
-  const auto slump = exact::leading_order_slump(facts->material, facts->gravity, facts->cone.volume());
-  return exact::spread_creep(*fluid, slump.radius, slump.depth(0.5 * slump.radius),
-                             view.gauge.empty() ? slump.radius : 0.5 * view.gauge.value.back());
+  return fluid ? apparatus.predicted_creep(view, *fluid) : std::nullopt;
 }
 
 /// What a gauge reads; empty where it reads nothing.
@@ -161,7 +109,7 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
       continue;
     // A front in a box that still runs is no measure of rest.
     const bool rests = other.held || other.measures.cause == Cause::at_rest;
-    if (comparison.kind != scenes::Kind::slump && !rests) continue;
+    if (!comparison.apparatus->spreads() && !rests) continue;
     const int score = 4 * (other.held || other.measures.cause == Cause::at_rest) +
                       2 * (other.solver == view.solver) + !other.doubt.any();
     if (score > best_score) {
@@ -174,9 +122,20 @@ const RunView* arrested_reference(const Comparison& comparison, const RunView& v
 
 }  // namespace
 
+std::vector<std::pair<double, double>> body_forces(const RunView& view) {
+  std::vector<std::pair<double, double>> stages;
+  const Json::json_pointer at("/settings/forces/body_force");
+  if (!view.run.info.contains(at)) return stages;
+  for (const Json& stage : view.run.info.at(at))
+    if (stage.is_array() && stage.size() == 2 && stage[0].is_number() && stage[1].is_number())
+      stages.emplace_back(stage[0].get<double>(), stage[1].get<double>());
+  return stages;
+}
+
 void measure(RunView& view, const Comparison& comparison) {
   const Thresholds& thresholds = comparison.thresholds;
-  const bool slump = comparison.kind == scenes::Kind::slump, grows = grows_to_rest(comparison.kind);
+  const ApparatusReport& apparatus = *comparison.apparatus;
+  const bool spreads = apparatus.spreads();
   Measures& m = view.measures;
   const Json& info = view.run.info;
   if (!view.gauge.empty()) {
@@ -185,7 +144,7 @@ void measure(RunView& view, const Comparison& comparison) {
   }
   if (!view.run.profiles.empty()) {
     const auto& last = view.run.profiles.back();
-    if (slump) {
+    if (spreads) {
       const double depth = view.gauges.spread_depth;
       m.spread_at_half = read_value(runs::spread(last.coordinate, last.value, 0.5 * depth));
       m.spread_at_twice = read_value(runs::spread(last.coordinate, last.value, 2.0 * depth));
@@ -197,13 +156,13 @@ void measure(RunView& view, const Comparison& comparison) {
     m.predicted_creep = 0.0;
     m.residual = 0.0;
     m.cause = Cause::at_rest;
-    if (!slump) m.stopping_bound = number(info, "/stopping_time_bound_s");
+    if (!spreads) m.stopping_bound = number(info, "/stopping_time_bound_s");
     return;
   }
   m.rest_declared = number(info, "/rest_time_s");
-  for (const Reading& reading : readings_of(comparison.kind))
+  for (const Reading& reading : apparatus.readings())
     m.readings[reading.quantity].value = read(view.run, reading.quantity);
-  if (const auto growth = number(info, "/growth_to_come"); slump && !view.fluid && growth && m.gauge_end)
+  if (const auto growth = number(info, "/growth_to_come"); spreads && !view.fluid && growth && m.gauge_end)
     m.growth_to_come = *growth * *m.gauge_end;
   m.cpu = number(info, "/cpu_s");
   m.wall = number(info, "/wall_s");
@@ -211,14 +170,14 @@ void measure(RunView& view, const Comparison& comparison) {
   m.volume_drift = drift(column(view.run, "volume_m3"));
   m.mass_drift = drift(column(view.run, "mass_kg"));
   m.rest_by_shear_rate = settles_below(view.shear_rate, thresholds.rest_shear_rate);
-  m.predicted_creep = predicted_creep(view, comparison.kind);
-  if (view.gauge.empty() || view.unread || comparison.kind == scenes::Kind::v_funnel) return;
+  m.predicted_creep = predicted_creep(view, apparatus);
+  if (view.gauge.empty() || view.unread || apparatus.judged_by() == scenes::MainGauge::discharge) return;
   const double end = view.gauge.end();
   // Of a short record the last fifth, so that how the flow began is not taken for how it ends.
   const double window = std::min(thresholds.residual_window, 0.2 * (end - view.gauge.time.front()));
   const auto last = trend(view.gauge, end - window, end);
   if (last) m.residual_scatter = last->scatter;
-  if (grows) {
+  if (apparatus.grows()) {
     const Series rate = rate_of_change(view.gauge, thresholds.rate_window);
     m.rest_by_spread_rate = settles_below(rate, thresholds.rest_spread_rate);
     // A cone takes a moment to start: rest before it has moved is not rest.
@@ -230,7 +189,7 @@ void measure(RunView& view, const Comparison& comparison) {
     const double largest = *std::max_element(view.gauge.value.begin(), view.gauge.value.end());
     const double threshold = thresholds.rest_velocity_fraction * largest;
     double step = 0.0;
-    for (const auto& [from, force] : body_force(view))
+    for (const auto& [from, force] : body_forces(view))
       if (from < end) step = from;
     if (const auto settled = settles_below(view.gauge, threshold);
         settled && *settled >= step && largest > 0.0)
@@ -252,46 +211,8 @@ void measure(RunView& view, const Comparison& comparison) {
   }
 }
 
-void measure_approach(Comparison& comparison) {
-  if (comparison.kind != scenes::Kind::slump) return;
-  // Before that, a slump's inertia and its start decide.
-  const double unit = comparison.thresholds.time_unit, earliest = 5.0 * unit;
-  std::map<std::vector<double>, exact::Approach> known;
-  for (RunView& view : comparison.runs) {
-    Measures& m = view.measures;
-    const bool moves =
-        m.cause == Cause::approaching_rest || m.cause == Cause::within_bound || m.cause == Cause::unexplained;
-    if (view.exact || !moves) continue;
-    const auto facts = slump_facts(view);
-    const bool film = facts && facts->cone.domain_radius > 0.0 && facts->material.plastic_viscosity > 0.0 &&
-                      facts->material.flow_index == 1.0 &&
-                      word(view.run.info, "/settings/walls/base") == "no-slip" &&
-                      !view.run.info.contains(Json::json_pointer("/settings/thixotropy"));
-    if (!film || !m.end || *m.end < earliest) continue;
-    const auto& [material, gravity, cone] = *facts;
-    const double end = unit * std::round(*m.end / unit);
-    const std::vector<double> key = {
-        material.density,        material.yield_stress, material.plastic_viscosity, gravity,
-        cone.cone_radius_bottom, cone.volume(),         cone.domain_radius,         end,
-        view.gauges.spread_depth};
-    auto found = known.find(key);
-    if (found == known.end())
-      found =
-          known
-              .emplace(key, exact::approach_to_rest(material, gravity, cone.cone_radius_bottom, cone.volume(),
-                                                    cone.domain_radius, end, view.gauges.spread_depth))
-              .first;
-    if (!std::isfinite(found->second.film) || !std::isfinite(found->second.under_plug)) continue;
-    m.approach_least = std::min(found->second.film, found->second.under_plug);
-    m.approach_most = std::max(found->second.film, found->second.under_plug);
-    if (m.cause == Cause::unexplained && *m.residual >= 0.0 &&
-        *m.residual <= *m.approach_most + comparison.thresholds.creep_factor * *m.predicted_creep)
-      m.cause = Cause::approaching_rest;
-  }
-}
-
 void measure_overshoot(Comparison& comparison) {
-  if (!grows_to_rest(comparison.kind)) return;
+  if (!comparison.apparatus->grows()) return;
   for (RunView& view : comparison.runs) {
     if (view.exact) continue;
     const RunView* reference = arrested_reference(comparison, view);
@@ -314,7 +235,7 @@ void measure_uncertainty(Comparison& comparison) {
       for (auto& [quantity, reading] : view.measures.readings)
         if (const auto& value = other->measures.readings[quantity].value; reading.value && value)
           reading.uncertainty = grid_uncertainty(*reading.value, *cell_of(view), *value, *cell_of(*other));
-  if (comparison.kind == scenes::Kind::duct) return;
+  if (!comparison.apparatus->has_depth()) return;
   for (RunView& view : comparison.runs) {
     Measures& m = view.measures;
     if (view.exact || !m.gauge_end) continue;
@@ -325,7 +246,7 @@ void measure_uncertainty(Comparison& comparison) {
     };
     if (const auto grid = grid_difference(comparison, view))
       raise(*grid, "the difference between its grids");
-    else if (const auto cell = cell_of(view); cell && grows_to_rest(comparison.kind))
+    else if (const auto cell = cell_of(view); cell && comparison.apparatus->grows())
       raise(*cell, "its cell (there is no second grid)");
     if (m.residual_scatter) raise(2.0 * *m.residual_scatter, "the scatter of its record");
     if (m.spread_at_half && m.spread_at_twice &&

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "compare/comparison.h"
 
 /// What is measured of each run of a comparison.
 namespace flowrest::compare {
 
+/// (from time, force) in ascending time, N/m3; empty where the run does not say.
+std::vector<std::pair<double, double>> body_forces(const RunView&);
+
 /// Fills the run's measures, all but those that need other runs.
 void measure(RunView&, const Comparison&);
-
-/// How fast the exact material would still approach rest, of slumps that move and do not creep; fluids whose
-/// speed beyond that is within the factor of their creep are said to approach rest.
-void measure_approach(Comparison&);
 
 /// How far each slump stands past the arrested spread of an elasto-viscoplastic run.
 void measure_overshoot(Comparison&);

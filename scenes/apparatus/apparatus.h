@@ -17,7 +17,8 @@
 ///
 /// Every apparatus has: `name`, as scenes and run.json have it; `dimensions()`, `usual_dimension` and
 /// `dimensions_meaning`; `under_gravity`; `rests`, whether a run ends at rest unless the scene says
-/// otherwise; `keys()`; `body_height()`, m; `check`, which refuses sizes that cannot be; `load`, what a
+/// otherwise; `keys()`; `body_height()` and
+/// `body_size()`, m, by which lengths are carried from one body to another; `check`, which refuses sizes that cannot be; `load`, what a
 /// yield stress would have to hold; and `pieces`, what it is made of.
 namespace flowrest::scenes {
 

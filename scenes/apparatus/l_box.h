@@ -29,6 +29,7 @@ struct LBox {
   static std::vector<Dimension> dimensions() { return {Dimension::plane, Dimension::half, Dimension::full}; }
   static std::vector<Key> keys();
   double body_height() const { return reservoir_height; }
+  double body_size() const { return body_height(); }
   void check(const Case&) const;
   /// What there is to be held; nothing where walls let it slide, whatever it yields at.
   std::optional<Load> load(const Scene&) const;

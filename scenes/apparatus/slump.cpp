@@ -108,6 +108,8 @@ double Slump::volume() const {
           cone_radius_bottom * cone_radius_bottom);
 }
 
+double Slump::body_size() const { return std::cbrt(volume()); }
+
 std::vector<Key> Slump::keys() {
   std::vector<Key> keys;
   keys.push_back(

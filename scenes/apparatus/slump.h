@@ -29,6 +29,7 @@ struct Slump {
   }
   static std::vector<Key> keys();
   double body_height() const { return cone_height; }
+  double body_size() const;
   void check(const Case&) const;
   /// What there is to be held; nothing where walls let it slide, whatever it yields at.
   std::optional<Load> load(const Scene&) const;

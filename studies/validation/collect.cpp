@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/comparison.h"
 #include "compare/comparison_page.h"
 #include "compare/fields/section.h"
@@ -72,6 +73,16 @@ std::string ended_too_early(const Number& n, const RunView& view) {
   return end < *target ? fmt::format("the run ended after {:.3g} s", end) : "";
 }
 
+const compare::ApparatusReport& report_of(const scenes::Scene& scene) {
+  return compare::report_of(scene.geometry.apparatus);
+}
+
+/// Of a channel before whose end the front may stop.
+std::optional<double> channel_length_mm(const scenes::Scene& scene) {
+  const auto metres = report_of(scene).channel_length(scene);
+  return metres ? std::optional(1e3 * *metres) : std::nullopt;
+}
+
 std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>& all) {
   std::vector<Number> numbers;
   for (const Published& published : scene.published)
@@ -80,10 +91,9 @@ std::vector<Number> numbers_of(const SceneWanted& scene, const std::vector<Seen>
       Number n;
       n.published = published;
       n.solver = fine.wanted->solver;
-      n.grain = compare::words::grain_of(scene.scene.gauges, scene.scene.kind());
+      n.grain = compare::words::grain_of(scene.scene.gauges, scene.scene.main_gauge());
       n.model = fine.wanted->model;
-      if (published.quantity == "front_mm" && scene.scene.kind() == scenes::Kind::l_box)
-        n.wall = 1e3 * scene.scene.l_box().channel_length;
+      if (published.quantity == "front_mm") n.wall = channel_length_mm(scene.scene);
       const Seen* coarse = partner(all, fine, true);
       if (fine.view) {
         n.ours = compare::read(fine.view->run, published.quantity);
@@ -199,7 +209,7 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
                                     std::vector<report::Entry>& entries) {
   report::Plot plot{.id = slug(scene.name) + "-" + slug(gauge.key),
                     .title = fmt::format("{}: {} against time", scene.name, gauge.name),
-                    .caption = gauge.caption_for(scene.scene.gauges, scene.scene.kind())};
+                    .caption = gauge.caption_for(scene.scene.gauges, scene.scene.main_gauge())};
   plot.x = {"time", "s", false, true};
   plot.y = {gauge.name, gauge.unit, false, true};
   bool moves = false;
@@ -230,10 +240,10 @@ std::optional<report::Plot> plot_of(const SceneWanted& scene, const std::vector<
   return plot;
 }
 
-/// The level section of an L-box, in which the bars leave their streaks.
+/// The level section, in which bars leave their streaks.
 std::optional<report::Section> streaks_of(const SceneWanted& scene, const Comparison& comparison,
                                           const std::vector<Seen>& all, std::vector<report::Entry>& entries) {
-  if (scene.scene.kind() != scenes::Kind::l_box || !scene.scene.thixotropy) return std::nullopt;
+  if (!report_of(scene.scene).seen_from_above() || !scene.scene.thixotropy) return std::nullopt;
   for (report::Section& section : compare::fields::sections_of(comparison, section_times, section_bytes)) {
     if (section.id != "level-sections") continue;
     std::erase_if(section.panels, [&](report::Section::Panel& panel) {
@@ -259,10 +269,9 @@ std::vector<report::Block> figures_of(const SceneWanted& scene, const Comparison
   for (const Seen& seen : all)
     if (!seen.wanted->coarse && seen.view && !seen.view->gauge.empty())
       end = std::max(end, seen.view->gauge.end());
-  std::vector<compare::Gauge> gauges = {compare::gauge_of(scene.scene.kind())};
-  for (const compare::Gauge& gauge : compare::further_gauges(scene.scene.kind())) {
-    const bool of_slump = scene.scene.kind() == scenes::Kind::slump && gauge.key == "height";
-    if (!of_slump && gauge.key != "start_height") gauges.push_back(gauge);
+  std::vector<compare::Gauge> gauges = {report_of(scene.scene).gauge()};
+  for (const compare::Gauge& gauge : report_of(scene.scene).further_gauges()) {
+    if (gauge.key != "height" && gauge.key != "start_height") gauges.push_back(gauge);
   }
   for (const compare::Gauge& gauge : gauges)
     if (auto plot = plot_of(scene, all, gauge, end, entries)) figures.emplace_back(std::move(*plot));
@@ -282,7 +291,7 @@ Found found_run(const Folder& folder, const Seen& seen, const compare::Gauge& ga
   found.end = view.measures.end;
   if (view.measures.gauge_end) found.gauge_end = gauge.shown * *view.measures.gauge_end;
   found.arrival = compare::read(view.run, "arrival_s");
-  if (compare::grows_to_rest(seen.wanted->point.scene->kind())) {
+  if (report_of(*seen.wanted->point.scene).grows()) {
     const Series series = compare::column(view.run, found.arrival ? "end_height_mm" : gauge.column,
                                           found.arrival ? 1.0 : 1e3 * gauge.si);
     if (!series.empty())
@@ -334,12 +343,12 @@ std::string command_for(const std::string& scene, const Options& options) {
 
 SceneFound collect_scene(const Folder& folder, const SceneWanted& wanted, const Options& options,
                          std::vector<report::Entry>& entries) {
-  const compare::Gauge& gauge = compare::gauge_of(wanted.scene.kind());
+  const compare::Gauge& gauge = report_of(wanted.scene).gauge();
   SceneFound scene{.name = wanted.name,
                    .title = wanted.scene.title,
-                   .kind = wanted.scene.kind(),
-                   .gauges = wanted.scene.gauges};
-  if (scene.kind == scenes::Kind::l_box) scene.length_mm = 1e3 * wanted.scene.l_box().channel_length;
+                   .apparatus = &report_of(wanted.scene),
+                   .gauges = wanted.scene.gauges,
+                   .length_mm = channel_length_mm(wanted.scene)};
   std::vector<fs::path> directories;
   for (const Wanted& run : wanted.runs) {
     entry_index(entries, run);

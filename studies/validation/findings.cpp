@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "compare/measures/gauges.h"
+#include "compare/apparatus/apparatus.h"
 #include "compare/words.h"
 #include "studies/validation/validation.h"
 
@@ -21,10 +21,8 @@ constexpr double told_apart = 0.005;   ///< s: half the interval at which histor
 constexpr double grids_apart = 15.0;   ///< mm, of spreads on two grids
 constexpr std::size_t named_at_most = 4;
 
-bool stops_by_itself(scenes::Kind kind) { return kind == scenes::Kind::slump || kind == scenes::Kind::l_box; }
-
 compare::words::Grain grain_of(const SceneFound& scene) {
-  return compare::words::grain_of(scene.gauges, scene.kind);
+  return compare::words::grain_of(scene.gauges, scene.apparatus->judged_by());
 }
 std::string rate(const SceneFound& scene, double mm_per_s) {
   return compare::words::speed(1e-3 * mm_per_s, grain_of(scene));
@@ -66,7 +64,7 @@ bool says_nothing(const Found& run) {
 void add_rest(std::vector<Finding>& all, const SceneFound& scene) {
   for (const Found* run : fine_runs(scene)) {
     const bool solid = laws::can_rest(run->wanted.model);
-    const std::string source = scene.kind == scenes::Kind::slump ? "Yu Figs. 8 and 14" : "Yu Figs. 19 and 20";
+    const std::string source = scene.apparatus->spreads() ? "Yu Figs. 8 and 14" : "Yu Figs. 19 and 20";
     Finding f = finding(solid ? "the solid stops by itself" : "the fluid does not stop", source, scene.name,
                         run->wanted);
     const auto moving = [&] {
@@ -112,7 +110,7 @@ void add_length(std::vector<Finding>& all, const SceneFound& scene) {
       if (!arrives && !run->arrival && !run->rest && run->creep) {
         f.seen += ", moving on by " + rate(scene, *run->creep);
         // As much time again must not bring it to the wall.
-        const double wall = scene.length_mm.value_or(*run->gauge_end);
+        const double wall = *scene.length_mm;
         if (*run->gauge_end + *run->creep * *run->end > wall) f.holds = Holds::undecided;
       }
     }
@@ -125,14 +123,15 @@ void add_flocculation(std::vector<Finding>& all, const SceneFound& scene) {
   for (const Flocculation& f : scene.flocculation) {
     const auto add = [&](const std::string& claim, Holds holds, const std::string& seen) {
       all.push_back({claim,
-                     scene.kind == scenes::Kind::v_funnel ? "Yu Figs. 26 and 27" : "Yu Figs. 15, 21, 22",
+                     scene.apparatus->judged_by() == scenes::MainGauge::discharge ? "Yu Figs. 26 and 27"
+                                                                                  : "Yu Figs. 15, 21, 22",
                      scene.name, f.solver, scenes::to_string(f.model), holds, seen});
     };
     const auto said = [](bool holds) { return holds ? Holds::yes : Holds::no; };
     if (!f.rises_only)
       add("λ falls while the concrete flows", said(f.least < (1.0 - least_change) * f.start),
           fmt::format("from {:.2f} to {:.2f} within {}", f.start, f.least, compare::words::time(f.least_at)));
-    if (!stops_by_itself(scene.kind) || !(f.growth_at_rest > 0.0)) continue;
+    if (!scene.apparatus->rests() || !(f.growth_at_rest > 0.0)) continue;
     const double share = f.rate_end / f.growth_at_rest;
     const std::string goes = fmt::format("{} by {:.2g} a second at {}, {:.0f} % of what it has at rest",
                                          f.rate_end < 0.0 ? "falls" : "grows", std::abs(f.rate_end),
@@ -271,10 +270,10 @@ std::vector<Finding> findings_of(const std::vector<SceneFound>& scenes) {
   std::vector<Finding> all;
   add_spreads(all, scenes);
   for (const SceneFound& scene : scenes)
-    if (scene.kind == scenes::Kind::l_box) add_length(all, scene);
+    if (scene.length_mm) add_length(all, scene);
   add_order(all, scenes);
   for (const SceneFound& scene : scenes)
-    if (stops_by_itself(scene.kind)) add_rest(all, scene);
+    if (scene.apparatus->rests()) add_rest(all, scene);
   for (const SceneFound& scene : scenes) add_flocculation(all, scene);
   // Claim by claim, in the order in which they first came.
   std::vector<std::string> claims;

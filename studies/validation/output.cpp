@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/gauges.h"
 #include "runs/run_directory.h"
 #include "studies/validation/validation.h"
@@ -43,8 +44,8 @@ Json perpetual_json(const SceneFound& scene, const Perpetual& p) {
   for (const auto& [time, gauge] : p.fluid_at) times.push_back({{"time_s", time}, {"gauge", gauge}});
   return {{"solver", to_string(p.solver)},
           {"fluid", scenes::to_string(p.fluid)},
-          {"gauge", compare::gauge_of(scene.kind).name},
-          {"unit", compare::gauge_of(scene.kind).unit},
+          {"gauge", scene.apparatus->gauge().name},
+          {"unit", scene.apparatus->gauge().unit},
           {"solid_rests_s", value(p.rest)},
           {"solid", value(p.solid)},
           {"read_from_s", p.from},
@@ -108,7 +109,7 @@ Json to_json(const Validation& validation) {
   for (const SceneFound& scene : validation.scenes) {
     Json entry = {{"scene", scene.name},
                   {"title", scene.title},
-                  {"kind", scenes::to_string(scene.kind)},
+                  {"kind", scene.apparatus->name()},
                   {"notes", scene.notes},
                   {"how_to_make_what_is_missing", scene.how_to_make},
                   {"runs", Json::array()},

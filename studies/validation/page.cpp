@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/measures/gauges.h"
 #include "compare/words.h"
 #include "runs/command.h"
@@ -262,7 +263,7 @@ class ValidationPage {
     int solids = 0, fluids = 0, restless = 0;
     for (const SceneFound& scene : validation_.scenes) {
       // What is driven, or drains, has no rest to come to.
-      if (scene.kind != scenes::Kind::slump && scene.kind != scenes::Kind::l_box) continue;
+      if (!scene.apparatus->rests()) continue;
       for (const Found& run : scene.runs) {
         if (run.wanted.coarse || run.outcome.ending != Ending::finished) continue;
         const bool solid = laws::can_rest(run.wanted.model);
@@ -304,7 +305,7 @@ class ValidationPage {
     for (const SceneFound& scene : validation_.scenes)
       for (const Perpetual& p : scene.perpetual)
         if (const auto change = p.rest ? p.change() : std::nullopt) {
-          const auto& gauge = compare::gauge_of(scene.kind);
+          const auto& gauge = scene.apparatus->gauge();
           by_unit[gauge.unit].push_back(
               {*change, fmt::format("{:.{}f} {} in {} ({}, from {} to {})", *change,
                                     std::abs(*change) < 10.0 ? 1 : 0, gauge.unit, scene.name,
@@ -327,7 +328,7 @@ class ValidationPage {
   std::string physics_and_numerics() const {
     std::vector<double> law, solver, grid;
     for (const SceneFound& scene : validation_.scenes) {
-      if (!compare::grows_to_rest(scene.kind)) continue;
+      if (!scene.apparatus->grows()) continue;
       const auto of = [&](const Found& a, auto same) -> std::optional<double> {
         for (const Found& b : scene.runs)
           if (&a != &b && a.gauge_end && b.gauge_end && same(a.wanted, b.wanted))
@@ -378,7 +379,7 @@ class ValidationPage {
   compare::words::Grain finest_grain() const {
     compare::words::Grain finest;
     for (const SceneFound& scene : validation_.scenes) {
-      const auto grain = compare::words::grain_of(scene.gauges, scene.kind);
+      const auto grain = compare::words::grain_of(scene.gauges, scene.apparatus->judged_by());
       if (grain.length < finest.length) finest = grain;
     }
     return finest;
@@ -584,7 +585,7 @@ class ValidationPage {
                      {"at five times", ""},     {"Fluid's end", "s", {Format::Kind::significant, 3}},
                      {"Fluid, at its end", ""}, {"Change", ""}};
     for (const SceneFound& scene : validation_.scenes) {
-      const compare::Gauge& gauge = compare::gauge_of(scene.kind);
+      const compare::Gauge& gauge = scene.apparatus->gauge();
       const auto value = [&](const std::optional<double>& v) {
         return v ? Table::Cell(
                        unbroken(fmt::format("{:.{}f} {}", *v, gauge.unit == "m/s" ? 4 : 1, gauge.unit)))

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runs/run_directory.h"
+#include "scenes/pieces.h"
 #include "studies/validation/validation.h"
 
 namespace flowrest::studies::validation {
@@ -14,12 +15,10 @@ namespace {
 /// this one's.
 std::string version() { return runs::version_in(runs::provenance()); }
 
-/// Cells of the second resolution. A duct's plates lie on grid lines, so it has a whole number of them
-/// across.
+/// Cells of the second resolution. Plates lie on grid lines, with a whole number of cells between them.
 double coarse_cell(const scenes::Scene& scene, double cell, double coarsening) {
-  if (scene.kind() != scenes::Kind::duct) return cell * coarsening;
-  const double height = scene.duct().height;
-  return height / std::max(1.0, std::round(height / (cell * coarsening)));
+  const auto height = scenes::pieces_of(scene).whole_cells_over;
+  return height ? *height / std::max(1.0, std::round(*height / (cell * coarsening))) : cell * coarsening;
 }
 
 Wanted wanted_run(const std::string& name, const scenes::Scene& scene, Solver solver, scenes::Model model,

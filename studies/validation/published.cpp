@@ -10,6 +10,7 @@
 #include "compare/exact/solutions.h"
 #include "runs/csv.h"
 #include "runs/run_directory.h"
+#include "scenes/pieces.h"
 #include "scenes/text.h"
 
 namespace flowrest::studies::validation {
@@ -97,9 +98,11 @@ std::vector<PaperItem> read_paper_items() {
 }
 
 std::vector<Published> exact_numbers(const std::string& name, const scenes::Scene& scene) {
-  if (scene.kind() != scenes::Kind::duct || scene.forces.body_force.empty()) return {};
+  const auto gauged = scenes::pieces_of(scene).gauged;
+  const auto* plates = std::get_if<scenes::PlatesGauge>(&gauged);
+  if (!plates || scene.forces.body_force.empty()) return {};
   const scenes::Material& material = scene.material;
-  const double height = scene.duct().height, force = scene.forces.body_force.back().second;
+  const double height = plates->height, force = scene.forces.body_force.back().second;
   const bool stepped = scene.forces.body_force.size() > 1;
   std::set<scenes::Model> models(scene.runs.mpm.begin(), scene.runs.mpm.end());
   models.insert(scene.runs.foam.begin(), scene.runs.foam.end());

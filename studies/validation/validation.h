@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/comparison.h"
 #include "compare/measures/series.h"
 #include "compare/report/page.h"
 #include "compare/words.h"
@@ -144,9 +145,9 @@ std::string to_string(Finding::Holds);
 /// All that is known of one scene.
 struct SceneFound {
   std::string name = {}, title = {};
-  scenes::Kind kind = scenes::Kind::slump;
+  const compare::ApparatusReport* apparatus = nullptr;
   scenes::Gauges gauges = {};            ///< what its gauges are defined by
-  std::optional<double> length_mm = {};  ///< of an L-box's channel
+  std::optional<double> length_mm = {};  ///< of a channel before whose end the front may stop
   std::vector<Found> runs = {};
   std::vector<Number> numbers = {};
   std::vector<Perpetual> perpetual = {};

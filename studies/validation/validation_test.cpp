@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "compare/apparatus/apparatus.h"
 #include "compare/report/browser.h"
 #include "compare/synthetic_runs.h"
 #include "runs/run_directory.h"
@@ -229,7 +230,9 @@ constexpr const char *solid_name = "elasto-viscoplastic", *fluid_name = "papanas
 }  // namespace
 
 TEST(Findings, AnLBoxStopsShortInTheSolidAndNotInTheFluid) {
-  SceneFound box{.name = "mix-b-lbox-sf0", .kind = scenes::Kind::l_box, .length_mm = 600.0};
+  SceneFound box{.name = "mix-b-lbox-sf0",
+                 .apparatus = &compare::report_of(scenes::Apparatus(scenes::LBox{})),
+                 .length_mm = 600.0};
   box.numbers = {number_of("mix-b-lbox-sf0", "front_mm", 580.0, 570.0, solid_law, "Yu Table 3")};
   box.runs = {run_of(Solver::mpm, solid_law, 570.0, 12.0, std::nullopt, 0.0),
               run_of(Solver::mpm, fluid_law, 585.0, std::nullopt, std::nullopt, 0.7)};
@@ -264,7 +267,7 @@ TEST(Findings, TheOrderOfTheFunnelsTimesIsThatOfEveryPairToldApart) {
     const double paper[] = {1.4, 1.5, 1.36, 1.5};
     for (std::size_t i = 0; i < ours.size(); ++i)
       scenes.push_back({.name = "funnel",
-                        .kind = scenes::Kind::v_funnel,
+                        .apparatus = &compare::report_of(scenes::Apparatus(scenes::VFunnel{})),
                         .numbers = {number_of("funnel", "light_s", paper[i], ours[i],
                                               i < 2 ? solid_law : fluid_law, "Yu Table 4")}});
     return found_of(findings_of(scenes), "in the paper's order", law);
@@ -280,7 +283,8 @@ TEST(Findings, TheOrderOfTheFunnelsTimesIsThatOfEveryPairToldApart) {
 }
 
 TEST(Findings, FlocsBreakInFlowAndGrowAtRest) {
-  SceneFound slump{.name = "mix-a-slump-sf600", .kind = scenes::Kind::slump};
+  SceneFound slump{.name = "mix-a-slump-sf600",
+                   .apparatus = &compare::report_of(scenes::Apparatus(scenes::Slump{}))};
   Flocculation solid{.start = 2.8,
                      .least = 1.8,
                      .least_at = 0.6,
@@ -308,7 +312,8 @@ TEST(Findings, FlocsBreakInFlowAndGrowAtRest) {
 }
 
 TEST(Findings, TableTwoIsMetByEverySpreadOnGridsThatAreClose) {
-  SceneFound slump{.name = "mix-a-slump-sf0", .kind = scenes::Kind::slump};
+  SceneFound slump{.name = "mix-a-slump-sf0",
+                   .apparatus = &compare::report_of(scenes::Apparatus(scenes::Slump{}))};
   slump.numbers = {number_of("mix-a-slump-sf0", "spread_mm", 535.0, 550.0, solid_law, "Yu Table 2")};
   slump.numbers[0].coarse = 545.0;
   EXPECT_EQ(found_of(findings_of({slump}), "one set of parameters", solid_name),
