@@ -13,12 +13,14 @@
 #include "cli/run_command.h"
 #include "cli/version.h"
 #include "mpm/commands.h"
+#include "mpm/cost.h"
 #include "runs/console.h"
 #include "runs/machine.h"
 #include "scenes/commands.h"
 #include "scenes/scene.h"
 #ifdef FLOWREST_HAS_FOAM
 #include "foamCases/commands.h"
+#include "foamCases/cost.h"
 #endif
 #ifdef FLOWREST_HAS_COMPARE
 #include "compare/commands.h"
@@ -57,7 +59,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(exit_codes);
   app.set_version_flag("--version", cli::version_text, "Say version, commit, build, parts and OpenFOAM");
-  scenes::add_commands(app);
+  scenes::Estimates estimates;
+  estimates.mpm = mpm::cost;
+#ifdef FLOWREST_HAS_FOAM
+  estimates.foam = foam::estimate;
+#endif
+  scenes::add_commands(app, estimates);
   mpm::add_commands(app);
 #ifdef FLOWREST_HAS_FOAM
   foam::add_commands(app);

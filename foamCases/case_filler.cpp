@@ -10,10 +10,10 @@
 
 #include "foamCases/apparatus/apparatus.h"
 #include "foamCases/concrete_laws.h"
+#include "foamCases/step_rules.h"
 #include "runs/folder.h"
 #include "runs/run_directory.h"
 #include "scenes/installation.h"
-#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -62,8 +62,9 @@ void check_model(const Scene& scene) {
                                 laws::unit_of(parameter)));
 }
 
-std::string time_parameters(const Scene& scene) {
-  const double step = scenes::largest_foam_step(scene);
+std::string time_parameters(const ApparatusCase& apparatus) {
+  const Scene& scene = apparatus.scene();
+  const double step = largest_step(apparatus);
   return fmt::format(
       "\n// Time, s.\n"
       "endTime             {};\n"
@@ -101,7 +102,7 @@ std::string parameters(const ApparatusCase& apparatus, bool plug_in, int ranks) 
              "// includes it. SI units; stresses and viscosities of the transport models are over the "
              "density.\n\n",
              parameters_begin, scene.name) +
-         apparatus.mesh_parameters() + time_parameters(scene) + apparatus.force_parameters() +
+         apparatus.mesh_parameters() + time_parameters(apparatus) + apparatus.force_parameters() +
          phase_parameters(scene) + concrete_laws(apparatus, plug_in) +
          fmt::format("\n// Parts into which decomposePar cuts the case.\nranks               {};\n", ranks);
 }

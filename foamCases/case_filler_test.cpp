@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "foamCases/apparatus/apparatus.h"
+#include "foamCases/step_rules.h"
 #include "foamCases/test_scene.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/run_directory.h"
-#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 namespace {
@@ -36,6 +36,8 @@ std::map<std::string, std::string> entries(const std::string& text) {
   }
   return result;
 }
+
+double largest(const scenes::Scene& scene) { return largest_step(*case_of(scene)); }
 
 std::string refusal(const std::string& model, const std::vector<std::string>& set) {
   try {
@@ -179,10 +181,9 @@ TEST(CaseFiller, ANewtonianFluidHasOneViscosity) {
 }
 
 TEST(CaseFiller, TheStepNeverPassesASampleAndObeysTheScene) {
-  EXPECT_DOUBLE_EQ(scenes::largest_foam_step(roussel_slump("papanastasiou")), 0.0046);
-  EXPECT_EQ(scenes::largest_foam_step(roussel_slump("papanastasiou", {"foam.max_time_step=0.002"})), 0.002);
-  EXPECT_EQ(scenes::largest_foam_step(roussel_slump("papanastasiou", {"material.plastic_viscosity=0.1"})),
-            0.05);
+  EXPECT_DOUBLE_EQ(largest(roussel_slump("papanastasiou")), 0.0046);
+  EXPECT_EQ(largest(roussel_slump("papanastasiou", {"foam.max_time_step=0.002"})), 0.002);
+  EXPECT_EQ(largest(roussel_slump("papanastasiou", {"material.plastic_viscosity=0.1"})), 0.05);
 }
 
 /// The plug-in watches every run; only a slump's step grows, and only where nothing holds it.
@@ -235,7 +236,7 @@ TEST(CaseFiller, ADuctIsAColumnOfCellsUnderTheForcesOfTheScene) {
     const auto at = text.find(key, text.find(name));
     return std::stod(text.substr(at + key.size()));
   };
-  const double step = scenes::largest_foam_step(scene);
+  const double step = largest(scene);
   const double first = source("from0", "timeStart"), second = source("from1", "timeStart");
   EXPECT_GT(first, 0.0);
   EXPECT_LT(first, 0.01 * step);

@@ -7,8 +7,8 @@
 
 #include "foamCases/function_object.h"
 #include "foamCases/plug_in.h"
+#include "foamCases/step_rules.h"
 #include "foamCases/viscosity.h"
-#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -155,13 +155,13 @@ std::string plug_in_stress(const Scene& scene) {
 }
 
 /// Watches the velocity from step to step, and lets a slump's step grow.
-std::string staged_step(const Scene& scene) {
+std::string staged_step(const ApparatusCase& apparatus) {
   constexpr double cells_per_second = 1e-3;
   return function_object("stagedStep",
                          fmt::format("        least           {};  // s\n        most            {};  // s\n"
                                      "        ofTime          {};\n        stillness       {};  // m/s\n",
-                                     scenes::largest_foam_step(scene), scenes::grown_foam_step(scene),
-                                     scenes::foam_step_of_time, cells_per_second * scene.foam.cell));
+                                     largest_step(apparatus), grown_step(apparatus), step_of_time,
+                                     cells_per_second * apparatus.scene().foam.cell));
 }
 
 /// What is done to the concrete after every step, or read off it.
@@ -172,7 +172,7 @@ std::string after_every_step(const ApparatusCase& apparatus, bool plug_in) {
     text += function_object(
         "shearRate", fmt::format("        strainRate      {};\n", scenes::to_string(scene.foam.strain_rate)));
   text += apparatus.function_objects(plug_in);
-  if (plug_in) text += staged_step(scene);
+  if (plug_in) text += staged_step(apparatus);
   return fmt::format("afterEveryStep\n{{\n{}}}\n", text);
 }
 

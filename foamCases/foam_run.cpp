@@ -16,12 +16,14 @@
 #include "foamCases/apparatus/apparatus.h"
 #include "foamCases/case_fields.h"
 #include "foamCases/case_filler.h"
+#include "foamCases/cost.h"
 #include "foamCases/field_file.h"
 #include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/ranks.h"
 #include "foamCases/run_state.h"
 #include "foamCases/solver_log.h"
+#include "foamCases/step_rules.h"
 #include "runs/command.h"
 #include "runs/console.h"
 #include "runs/cores.h"
@@ -32,9 +34,7 @@
 #include "runs/run_folder.h"
 #include "runs/temporary_folder.h"
 #include "runs/verdict.h"
-#include "scenes/cost.h"
 #include "scenes/pieces.h"
-#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 
@@ -88,19 +88,20 @@ Programs needed_programs(const ApparatusCase& apparatus, int ranks) {
 }
 
 /// How the steps are bounded, in words.
-std::string step_rule(const scenes::Scene& scene, bool plug_in) {
+std::string step_rule(const ApparatusCase& apparatus, bool plug_in) {
+  const scenes::Scene& scene = apparatus.scene();
   const char* bound = "cell^2 density / plastic viscosity";
   if (scene.foam.max_time_step) {
     bound = "foam.max_time_step";
   } else if (laws::can_rest(scene.material.model)) {
     bound = "1.5 cells at the speed of shear waves";
   }
-  const double first = scenes::largest_foam_step(scene), most = scenes::grown_foam_step(scene);
+  const double first = largest_step(apparatus), most = grown_step(apparatus);
   std::string rule = fmt::format("Courant number at most {:g}, step at most {:.4g} s ({})",
                                  scene.foam.max_courant, first, bound);
   if (plug_in && most > first)
     rule += fmt::format(" or, where that is more, 1/{:g} of the time passed, up to {:.4g} s",
-                        1.0 / scenes::foam_step_of_time, most);
+                        1.0 / step_of_time, most);
   return rule;
 }
 
@@ -152,7 +153,7 @@ class CaseRun {
       // So that it can be prolonged.
       if (status_ == Status::end_time) complete_last_state(case_, last_step_, time_step_before_, steps_);
     } catch (const std::exception&) {
-      const runs::Failure failure = runs::failure_at_hand(scenes::estimate_foam(scene_).cost.memory);
+      const runs::Failure failure = runs::failure_at_hand(estimate(scene_).cost.memory);
       fail(failure.reason, failure.fault);
     }
     summarise();
@@ -369,7 +370,7 @@ class CaseRun {
   void count(const SolverStep& step) {
     sampler_->note(step);
     tally(step);
-    small_steps_ = step.time_step < collapsed_step * scenes::largest_foam_step(scene_) ? small_steps_ + 1 : 0;
+    small_steps_ = step.time_step < collapsed_step * largest_step_ ? small_steps_ + 1 : 0;
     if (small_steps_ == collapsed_steps)
       fail(fmt::format("the time step collapsed to {:.2g} s at {:.4g} s: the flow diverges", step.time_step,
                        step.time));
@@ -479,7 +480,7 @@ class CaseRun {
     for (const auto& gauge : last.items()) info["gauges"].push_back(gauge.key());
     info["courant_max"] = max_courant_;
     info["time_step_max_s"] = max_time_step_;
-    info["time_step_rule"] = step_rule(scene_, plug_in_.has_value());
+    info["time_step_rule"] = step_rule(*apparatus_, plug_in_.has_value());
     info["noise"] = {{"measure", fmt::format("{}, median of blocks of steps", monitor_.measure().name)},
                      {"block_steps", NoiseMonitor::block_steps},
                      {"bound", monitor_.measure().bound},
@@ -492,6 +493,7 @@ class CaseRun {
 
   const scenes::Scene& scene_;
   std::unique_ptr<ApparatusCase> apparatus_;
+  double largest_step_ = largest_step(*apparatus_);  ///< s, before it grows
   const RunOptions& options_;
   Programs programs_;
   std::optional<RunState> state_;

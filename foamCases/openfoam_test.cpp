@@ -16,13 +16,13 @@
 #include "foamCases/foam_run.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/slump_sampler.h"
+#include "foamCases/step_rules.h"
 #include "foamCases/test_interrupt.h"
 #include "foamCases/test_scene.h"
 #include "foamCases/wedge_grid.h"
 #include "runs/depth.h"
 #include "runs/process.h"
 #include "runs/verdict.h"
-#include "scenes/step_limits.h"
 
 namespace flowrest::foam {
 namespace {
@@ -500,10 +500,10 @@ TEST_F(PlugIn, ASlumpsStepGrowsAndItsVelocityIsWatched) {
   const auto scene = roussel_slump("elasto-viscoplastic", set);
   const auto& time = grown.history.at("time_s");
   const auto& step = grown.history.at("time_step_s");
-  const double least = scenes::largest_foam_step(scene);
+  const double least = largest_step(*case_of(scene));
   for (std::size_t i = 1; i < time.size(); ++i)
-    EXPECT_LE(step[i], 1.001 * std::max(least, scenes::foam_step_of_time * time[i])) << time[i];
-  EXPECT_NEAR(step.back(), scenes::foam_step_of_time * time.back(), 0.02 * step.back());
+    EXPECT_LE(step[i], 1.001 * std::max(least, step_of_time * time[i])) << time[i];
+  EXPECT_NEAR(step.back(), step_of_time * time.back(), 0.02 * step.back());
   EXPECT_GT(step.back(), 1.2 * least);
 
   auto held = set;

@@ -6,12 +6,12 @@
 
 #include "foamCases/case_filler.h"
 #include "foamCases/plug_in.h"
-#include "scenes/step_limits.h"
+#include "foamCases/step_rules.h"
 
 namespace flowrest::foam {
 
 RowClock::RowClock(const scenes::Scene& scene, double interval)
-    : interval_(interval), early_(0.51 * std::min(scenes::grown_foam_step(scene), sample_interval(scene))) {}
+    : interval_(interval), early_(0.51 * std::min(grown_step(*case_of(scene)), sample_interval(scene))) {}
 
 bool RowClock::is_due(double time, bool at_end) {
   if (time + early_ < next_ && !at_end) return false;
@@ -100,8 +100,6 @@ bool Sampler::history_is_due(double time) { return history_clock_.is_due(time, i
 
 bool Sampler::profile_is_due(double time) { return profile_clock_.is_due(time, is_at_end(time)); }
 
-bool Sampler::is_at_end(double time) const {
-  return time > scene_.time.end - scenes::grown_foam_step(scene_);
-}
+bool Sampler::is_at_end(double time) const { return time > scene_.time.end - grown_step(*case_of(scene_)); }
 
 }  // namespace flowrest::foam

@@ -81,6 +81,8 @@ int cells_over(double length, double cell) {
   return static_cast<int>(std::lround(std::clamp(length / cell, 1.0, most_cells)));
 }
 
+double estimated_over(double length, double cell) { return std::max(1.0, std::round(length / cell)); }
+
 Line line_through(std::vector<double> places, double cell) {
   std::sort(places.begin(), places.end());
   places.erase(

@@ -45,6 +45,8 @@ inline constexpr double far = 1e3;
 inline constexpr double wall_thickness = 0.04;
 
 int cells_over(double length, double cell);
+/// As cells_over, of a length that may be of any size.
+double estimated_over(double length, double cell);
 
 /// Places along an axis between which cells are laid.
 struct Line {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "foamCases/conservation.h"
+#include "foamCases/cost.h"
 #include "foamCases/vessel_gauge.h"
-#include "scenes/cost.h"
 #include "scenes/scene.h"
 
 namespace flowrest::foam {
@@ -54,13 +54,13 @@ TEST(BlockMesh, CellsFollowTheOrderOfBlockMeshAndFillTheBlock) {
   EXPECT_THAT(text, ::testing::Not(HasSubstr("none")));
 }
 
-/// The estimate lies in another room, which knows no mesh.
+/// The estimate is made before any mesh is laid out.
 TEST(Cost, CountsAVesselsCellsToAFifth) {
   for (const char* name : {"mix-a-lbox-sf0", "mix-a-vfunnel-sf0", "dam-break"}) {
     for (const char* cell : {"foam.cell=0.02", "foam.cell=0.01"}) {
       const scenes::Scene scene = scene_of(name, {cell});
       const double cells = static_cast<double>(mesh_cells(vessel_mesh(scene)).size());
-      EXPECT_NEAR(scenes::estimate_foam(scene).cells, cells, 0.2 * cells) << name << " " << cell;
+      EXPECT_NEAR(estimate(scene).cells, cells, 0.2 * cells) << name << " " << cell;
     }
   }
 }

@@ -45,7 +45,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-void add_check(CLI::App& app) {
+void add_check(CLI::App& app, const Estimates& estimates) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command =
       app.add_subcommand("check", "Show what a scene resolves to, its step limits and what a run will cost");
@@ -55,19 +55,19 @@ void add_check(CLI::App& app) {
   command->add_option("--set", options->set, "KEY=VALUE: override a key by its dotted path")
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Add a machine-readable last line");
-  command->callback([options] {
+  command->callback([options, estimates] {
     const Scene scene = load_scene(options->scene, overrides_of_command_line(options->set, options->model));
     print_notes(plausibility_notes(scene));
-    fmt::print("{}", check_text(scene));
-    if (options->json) fmt::print("{}\n", check_json(scene));
+    fmt::print("{}", check_text(scene, estimates));
+    if (options->json) fmt::print("{}\n", check_json(scene, estimates));
   });
 }
 
 }  // namespace
 
-void add_commands(CLI::App& app) {
+void add_commands(CLI::App& app, const Estimates& estimates) {
   add_scenes(app);
-  add_check(app);
+  add_check(app, estimates);
 }
 
 }  // namespace flowrest::scenes

@@ -48,7 +48,29 @@ TEST(CheckCommand, ShowsResolvedSettingsAndLimits) {
   EXPECT_THAT(output,
               HasSubstr("  acoustic step limit         1.2 ms                1.15 cell / wave speed\n"));
   EXPECT_THAT(output, HasSubstr("  particles                   2025\n"));
-  EXPECT_THAT(output, HasSubstr("  mesh cells                  1710\n"));
+}
+
+TEST(CheckCommand, SaysOfSolversWhatTheyTell) {
+  const Scene scene = load_scene("roussel-slump", {});
+  const Estimates estimates{.mpm =
+                                [](const Scene&) {
+                                  return Cost{2e9, 7200.0};
+                                },
+                            .foam =
+                                [](const Scene&) {
+                                  return FoamEstimate{1710.0, 3430.0, 0.0046, {1e8, 100.0}};
+                                }};
+  const std::string text = check_text(scene, estimates);
+  EXPECT_THAT(text, HasSubstr("  occupied cells              225                   at the start\n"
+                              "  memory                      about 2 GB\n"
+                              "  cost                        about 2 h "));
+  EXPECT_THAT(text, HasSubstr("\nOpenFOAM run\n  mesh cells                  1710\n"));
+  const auto json = nlohmann::json::parse(check_json(scene, estimates));
+  EXPECT_EQ(json["mpm"]["cpu_s"], 7200.0);
+  EXPECT_EQ(json["foam"]["steps"], 3430.0);
+  // Where no solver tells anything, the scene is checked all the same.
+  EXPECT_THAT(check_text(scene, {}), testing::Not(HasSubstr("OpenFOAM run")));
+  EXPECT_FALSE(nlohmann::json::parse(check_json(scene, {})).contains("foam"));
 }
 
 TEST(CheckCommand, TakesSettingsBeforeAndAfterTheSceneAndAModel) {

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "scenes/scene.h"
 
 /// What a run is expected to cost, from rates that are assumptions until they are measured on the machine at
-/// hand.
+/// hand. Each solver's room tells it of its own runs.
 namespace flowrest::scenes {
 
 struct Cost {
@@ -16,9 +17,6 @@ struct Cost {
 /// "1.5 GB".
 std::string bytes_in_words(double);
 
-/// Of one run with the material point solver.
-Cost mpm_cost(const Scene&);
-
 /// Mesh and steps of an OpenFOAM run: at least these steps, as the Courant number may ask for smaller ones.
 struct FoamEstimate {
   double cells = 0.0;
@@ -26,6 +24,11 @@ struct FoamEstimate {
   double step = 0.0;  ///< s
   Cost cost;
 };
-FoamEstimate estimate_foam(const Scene&);
+
+/// What the solvers that are there tell of a run of a scene; empty where one is not built.
+struct Estimates {
+  std::function<Cost(const Scene&)> mpm;
+  std::function<FoamEstimate(const Scene&)> foam;
+};
 
 }  // namespace flowrest::scenes

@@ -215,7 +215,7 @@ void read_once(const std::string& text, const Overrides& overrides, Tally& tally
   if (scene) {
     const std::string settings = resolved_toml(*scene);
     EXPECT_EQ(resolved_toml(parse_scene(settings, "again.toml")), settings);
-    EXPECT_NE(check_json(*scene), check_text(*scene));
+    EXPECT_NE(check_json(*scene, {}), check_text(*scene, {}));
   }
   tally.slowest = std::max(tally.slowest, std::chrono::duration<double>(Clock::now() - start).count());
 }

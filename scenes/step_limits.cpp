@@ -99,32 +99,4 @@ MpmEstimate estimate_mpm(const Scene& scene) {
   return estimate;
 }
 
-double smallest_foam_cell(const Scene& scene) {
-  const bool bars = scene.kind() == Kind::l_box && scene.l_box().rebars > 0;
-  return bars ? std::min(scene.foam.cell, scene.l_box().rebar_diameter / 4.0) : scene.foam.cell;
-}
-
-double largest_foam_step(const Scene& scene) {
-  if (scene.foam.max_time_step) return *scene.foam.max_time_step;
-  constexpr double waves_over_cells = 1.5;
-  const Material& material = scene.material;
-  double step = std::min(scene.output.history_interval, scene.output.profile_interval);
-  if (laws::can_rest(material.model))
-    return std::min(step, waves_over_cells * smallest_foam_cell(scene) /
-                              std::sqrt(material.shear_modulus() / material.density));
-  if (material.plastic_viscosity > 0.0)
-    step = std::min(step,
-                    std::pow(smallest_foam_cell(scene), 2) * material.density / material.plastic_viscosity);
-  return step;
-}
-
-double grown_foam_step(const Scene& scene) {
-  constexpr double of_sample = 0.4;
-  const double step = largest_foam_step(scene);
-  if (scene.kind() != Kind::slump || scene.foam.max_time_step || scene.foam.laws == FoamLaws::built_in)
-    return step;
-  const double interval = std::min(scene.output.history_interval, scene.output.profile_interval);
-  return std::max(step, std::min(scene.foam.step_growth * step, of_sample * interval));
-}
-
 }  // namespace flowrest::scenes

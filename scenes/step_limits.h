@@ -2,7 +2,9 @@
 
 #include "scenes/scene.h"
 
-/// The time steps past which an explicit computation of a scene is unstable or silently wrong.
+/// The time steps past which an explicit computation of a scene is unstable or silently wrong. A scene that asks
+/// for more is refused as it is read, whichever solvers are there; steps that a solver chooses by itself, and
+/// what a run costs, are known to its own room.
 namespace flowrest::scenes {
 
 struct StepLimits {
@@ -16,24 +18,6 @@ struct StepLimits {
 };
 
 StepLimits step_limits(const Scene&);
-
-/// The largest step of an OpenFOAM run, before a slump's grows: foam.max_time_step; else, for a fluid, cell^2
-/// density / plastic_viscosity, above which creeping material turns to noise with few pressure correctors,
-/// and for the elasto-viscoplastic law one and a half cells at the speed of its shear waves, which are
-/// implicit: what it bounds is how late they answer. The cells are the smallest there are. At most the time
-/// between two samples. s
-double largest_foam_step(const Scene&);
-/// foam.cell, but between the bars of an L-box, where cells are half a radius wide. m
-double smallest_foam_cell(const Scene&);
-
-/// The part of the time passed to which a slump's step may grow beyond largest_foam_step. What it leaves
-/// undone is of its own size: the speed of a slump that slows falls as a power of the time.
-inline constexpr double foam_step_of_time = 0.004;
-
-/// What that step may grow to at most: foam.step_growth times largest_foam_step, and two fifths of the time
-/// between two samples; where foam.max_time_step is given, with OpenFOAM's own laws and for all else than
-/// slumps largest_foam_step. s
-double grown_foam_step(const Scene&);
 
 /// Speed of a fall from the body's height, and a funnel's above what it falls on; none in a duct. m/s
 double free_fall_speed(const Scene&);

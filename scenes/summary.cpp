@@ -103,10 +103,9 @@ std::string settings_text(const Scene& scene) {
   return text;
 }
 
-std::string mpm_text(const Scene& scene) {
+std::string mpm_text(const Scene& scene, const Estimates& estimates) {
   const StepLimits limits = step_limits(scene);
   const MpmEstimate estimate = estimate_mpm(scene);
-  const Cost cost = mpm_cost(scene);
   std::string text = fmt::format("Material point run, {}\n", to_string(scene.material.model));
   text += line("wave speed", fmt::format("{:.4g}", scene.mpm.cell / limits.acoustic),
                "m/s, under its own weight");
@@ -118,14 +117,15 @@ std::string mpm_text(const Scene& scene) {
   text += line("steps", fmt::format("{:.0f}", estimate.steps), "to time.end");
   text += line("particles", fmt::format("{:.0f}", estimate.particles));
   text += line("occupied cells", fmt::format("{:.0f}", estimate.cells), "at the start");
+  if (!estimates.mpm) return text;
+  const Cost cost = estimates.mpm(scene);
   text += line("memory", "about " + bytes_in_words(cost.memory));
   text += line("cost", "about " + duration(cost.cpu_seconds),
                "CPU time to time.end; less where it stops at rest");
   return text;
 }
 
-std::string foam_text(const Scene& scene) {
-  const FoamEstimate estimate = estimate_foam(scene);
+std::string foam_text(const FoamEstimate& estimate) {
   std::string text = "OpenFOAM run\n";
   text += line("mesh cells", fmt::format("{:.0f}", estimate.cells));
   text += line("step", "at most " + duration(estimate.step));
@@ -140,17 +140,17 @@ Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(
 
 }  // namespace
 
-std::string check_text(const Scene& scene) {
+std::string check_text(const Scene& scene, const Estimates& estimates) {
   std::string text = fmt::format("{}  ({})\n", scene.title, scene.path.string());
-  text += fmt::format("{}\n{}", settings_text(scene), mpm_text(scene));
-  if (!scene.runs.foam.empty()) text += fmt::format("\n{}", foam_text(scene));
+  text += fmt::format("{}\n{}", settings_text(scene), mpm_text(scene, estimates));
+  if (!scene.runs.foam.empty() && estimates.foam)
+    text += fmt::format("\n{}", foam_text(estimates.foam(scene)));
   return text;
 }
 
-std::string check_json(const Scene& scene) {
+std::string check_json(const Scene& scene, const Estimates& estimates) {
   const StepLimits limits = step_limits(scene);
   const MpmEstimate estimate = estimate_mpm(scene);
-  const Cost cost = mpm_cost(scene);
   Json json;
   json["scene"] = scene.name;
   json["notes"] = plausibility_notes(scene);
@@ -159,11 +159,17 @@ std::string check_json(const Scene& scene) {
                          {"viscous_s", finite(limits.viscous)},
                          {"largest_cfl", limits.largest_cfl},
                          {"largest_s", limits.largest()}};
-  json["mpm"] = {{"particles", estimate.particles}, {"cells", estimate.cells},
-                 {"steps", estimate.steps},         {"step_s", estimate.step},
-                 {"memory_bytes", cost.memory},     {"cpu_s", cost.cpu_seconds}};
-  if (!scene.runs.foam.empty()) {
-    const FoamEstimate foam = estimate_foam(scene);
+  json["mpm"] = {{"particles", estimate.particles},
+                 {"cells", estimate.cells},
+                 {"steps", estimate.steps},
+                 {"step_s", estimate.step}};
+  if (estimates.mpm) {
+    const Cost cost = estimates.mpm(scene);
+    json["mpm"]["memory_bytes"] = cost.memory;
+    json["mpm"]["cpu_s"] = cost.cpu_seconds;
+  }
+  if (!scene.runs.foam.empty() && estimates.foam) {
+    const FoamEstimate foam = estimates.foam(scene);
     json["foam"] = {{"cells", foam.cells},
                     {"steps", foam.steps},
                     {"step_s", foam.step},

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scenes/cost.h"
 #include "scenes/scene.h"
 
 /// A scene in words: for people, and as one line for programs.
@@ -10,10 +11,10 @@ namespace flowrest::scenes {
 /// Every key a scene can have, as Markdown tables.
 std::string key_reference();
 
-/// Resolved settings with their units, step limits, sizes and expected cost.
-std::string check_text(const Scene&);
+/// Resolved settings with their units, step limits, sizes and what the solvers that are there tell of them.
+std::string check_text(const Scene&, const Estimates&);
 
 /// The same as one line of JSON.
-std::string check_json(const Scene&);
+std::string check_json(const Scene&, const Estimates&);
 
 }  // namespace flowrest::scenes

@@ -8,9 +8,9 @@
 #include <fstream>
 
 #include "compare/words.h"
+#include "mpm/cost.h"
 #include "runs/command.h"
 #include "runs/run_directory.h"
-#include "scenes/cost.h"
 #include "scenes/names.h"
 #include "scenes/pieces.h"
 #include "scenes/text.h"
@@ -37,7 +37,7 @@ Json point_json(const Result& r, const std::string& quantity) {
           {"cell_m", r.point.scene->mpm.cell},
           {"relative_error", r.errors.at(quantity)},
           {"cpu_s", r.cpu},
-          {"expected_cpu_s", scenes::mpm_cost(*r.point.scene).cpu_seconds}};
+          {"expected_cpu_s", mpm::cost(*r.point.scene).cpu_seconds}};
 }
 
 /// Settings of the material or the geometry change what is simulated: they are no means to an accuracy.
@@ -254,9 +254,8 @@ Choice choose(const std::vector<Knowledge>& all, const scenes::Scene& scene, dou
   choice.expected_error = cheapest->error();
   // As much dearer than the known run as the estimates of both say.
   const double known_over_estimated = p.work > 0.0 ? p.cpu / p.work : 1.0;
-  choice.expected_cpu =
-      known_over_estimated * (scenes::mpm_cost(with_settings(scene, choice.set)).cpu_seconds +
-                              scenes::mpm_cost(with_settings(scene, choice.twin_set)).cpu_seconds);
+  choice.expected_cpu = known_over_estimated * (mpm::cost(with_settings(scene, choice.set)).cpu_seconds +
+                                                mpm::cost(with_settings(scene, choice.twin_set)).cpu_seconds);
   std::string settings;
   for (const std::string& s : choice.set) settings += (settings.empty() ? "" : ", ") + std::string(s);
   choice.why = fmt::format(

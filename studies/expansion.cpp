@@ -5,8 +5,12 @@
 #include <map>
 #include <set>
 
+#include "mpm/cost.h"
 #include "scenes/text.h"
 #include "studies/study.h"
+#ifdef FLOWREST_HAS_FOAM
+#include "foamCases/cost.h"
+#endif
 
 namespace flowrest::studies {
 
@@ -257,8 +261,12 @@ std::string to_string(Reference::Kind kind) {
 }
 
 scenes::Cost expected_cost(const Point& point) {
-  return point.solver == Solver::foam ? scenes::estimate_foam(*point.scene).cost
-                                      : scenes::mpm_cost(*point.scene);
+  if (point.solver == Solver::mpm) return mpm::cost(*point.scene);
+#ifdef FLOWREST_HAS_FOAM
+  return foam::estimate(*point.scene).cost;
+#else
+  return {};  // it is not made here
+#endif
 }
 
 std::string to_string(Point::Role role) {

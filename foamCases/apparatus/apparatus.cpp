@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <variant>
 
 #include "foamCases/apparatus/dam_break.h"
@@ -31,6 +32,10 @@ std::string ApparatusCase::force_parameters() const {
       "gravity             (0 0 {});  // m/s2\n"
       "baseWall            {}\n",
       -scene_.forces.gravity, condition);
+}
+
+double ApparatusCase::fall_speed() const {
+  return std::sqrt(2.0 * scene_.forces.gravity * scene_.body_height());
 }
 
 void ApparatusCase::refuse(const std::string& what) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,15 @@ class ApparatusCase {
   virtual bool leans() const { return false; }
   /// Whether shear rates follow from the cells' velocities; else the plug-in writes them.
   virtual bool rates_follow_from_velocities() const { return true; }
+  /// Cells of its mesh as they are counted before it is laid out: of vessels to some 20 %.
+  virtual double estimated_cells() const = 0;
+  /// Where the mesh is finest, m.
+  virtual double smallest_cell() const { return scene_.foam.cell; }
+  /// Whether steps grow once it is slow.
+  virtual bool steps_grow() const { return false; }
+  /// At which something moves through its finest cells for as long as a run lasts, m/s; nothing where only the
+  /// start is so fast.
+  virtual std::optional<double> lasting_speed() const { return std::nullopt; }
   /// Whether its concrete slows down under a surface.
   virtual bool slows() const { return true; }
 
@@ -71,6 +81,8 @@ class ApparatusCase {
   virtual std::unique_ptr<Sampler> sampler(CaseFields, runs::RunWriter&, bool plug_in) const = 0;
 
  protected:
+  /// Of a fall by the body's height, m/s.
+  double fall_speed() const;
   /// @throws scenes::SceneError that names the scene.
   [[noreturn]] void refuse(const std::string& what) const;
 

@@ -12,6 +12,10 @@ class DamBreakCase : public Vessel {
   DamBreakCase(const scenes::DamBreak& tank, const scenes::Scene& scene) : Vessel(scene), tank_(tank) {}
 
   bool slows() const override { return false; }
+  double estimated_cells() const override {
+    const double cell = scene().foam.cell;
+    return estimated_over(tank_.tank_length, cell) * estimated_over(2.0 * tank_.column_height, cell);
+  }
   std::array<Point, 2> initial_box() const override {
     return {Point{-far, -far, -far}, Point{tank_.column_length, far, tank_.column_height}};
   }

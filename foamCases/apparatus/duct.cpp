@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "foamCases/duct_sampler.h"
-#include "scenes/step_limits.h"
+#include "foamCases/step_rules.h"
 
 namespace flowrest::foam {
 
@@ -29,6 +29,7 @@ class DuctCase : public ApparatusCase {
     return static_cast<std::size_t>(std::lround(cells));
   }
   std::size_t slices() const override { return 1; }
+  double estimated_cells() const override { return std::round(duct_.height / scene().foam.cell); }
   bool slows() const override { return false; }
 
   std::string mesh_parameters() const override {
@@ -54,7 +55,7 @@ class DuctCase : public ApparatusCase {
   /// force.
   std::string body_forces() const {
     const auto& forces = scene().forces.body_force;
-    const double late = 1e-3 * scenes::largest_foam_step(scene());
+    const double late = 1e-3 * largest_step(*this);
     std::string text;
     for (std::size_t i = 0; i < forces.size(); ++i) {
       const auto& [time, force] = forces[i];

@@ -148,6 +148,28 @@ class LBoxCase : public Vessel {
   LBoxCase(const scenes::LBox& box, const scenes::Scene& scene) : Vessel(scene), box_(box) {}
 
   bool leans() const override { return true; }
+  double estimated_cells() const override {
+    // Those along and across that a mesh has for its bars more than its cell asks for.
+    constexpr double of_bars_along = 4.0, of_bars_across = 5.0;
+    const double cell = scene().foam.cell;
+    const double bars = box_.rebars > 0 ? 1.0 : 0.0;
+    const double channel = (estimated_over(box_.length(), cell) + bars * of_bars_along) *
+                           (estimated_over(box_.channel_height, cell) + 2.0);
+    const double reservoir = estimated_over(box_.reservoir_length, cell) *
+                             estimated_over(box_.reservoir_height - box_.channel_height, cell);
+    return (estimated_over(0.5 * box_.width, cell) + bars * of_bars_across) * (channel + reservoir);
+  }
+  /// Between the bars, half a radius wide.
+  double smallest_cell() const override {
+    const double cell = scene().foam.cell;
+    return box_.rebars > 0 ? std::min(cell, box_.rebar_diameter / 4.0) : cell;
+  }
+  /// What passes between the bars does so at a share of the fall's speed that was measured of the
+  /// elasto-viscoplastic law; a fluid's steps are smaller than that asks for.
+  std::optional<double> lasting_speed() const override {
+    constexpr double between_bars = 0.15;
+    return laws::can_rest(scene().material.model) ? std::optional(between_bars * fall_speed()) : std::nullopt;
+  }
   std::array<Point, 2> initial_box() const override {
     return {Point{-far, -far, -far}, Point{box_.reservoir_length, far, box_.reservoir_height}};
   }

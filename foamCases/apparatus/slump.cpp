@@ -17,6 +17,9 @@ namespace flowrest::foam {
 
 namespace {
 
+/// Rows into which the lowest is cut with the plug-in.
+constexpr int usual_base_rows = 4;
+
 /// A slump as a wedge about the vertical axis, or as a quarter.
 class SlumpCase : public ApparatusCase {
  public:
@@ -37,6 +40,14 @@ class SlumpCase : public ApparatusCase {
   std::size_t slices() const override {
     return static_cast<std::size_t>(is_quarter() ? quarter_grid(scene()).side : wedge_grid(scene()).rings);
   }
+  double estimated_cells() const override {
+    const double cell = scene().foam.cell, radius = std::ceil(cone_.domain_radius / cell);
+    // The usual four rows in place of the lowest.
+    const double rows = std::ceil(cone_.domain_height / cell) +
+                        (scene().foam.base_rows == 0 ? usual_base_rows : scene().foam.base_rows) - 1;
+    return rows * (is_quarter() ? radius * radius : radius);
+  }
+  bool steps_grow() const override { return true; }
   std::string folder() const override { return ApparatusCase::folder() + (is_quarter() ? "-quarter" : ""); }
 
   std::string mesh_parameters() const override { return is_quarter() ? quarter_mesh() : wedge_mesh(); }
@@ -65,9 +76,8 @@ class SlumpCase : public ApparatusCase {
     return cone_.mould_lift_velocity ? "no mould: the cone is released at once" : "";
   }
   void settle(scenes::Foam& foam, bool plug_in) const override {
-    constexpr int rows = 4;
     constexpr double rise_time = 0.1;  // s
-    if (foam.base_rows == 0) foam.base_rows = plug_in ? rows : 1;
+    if (foam.base_rows == 0) foam.base_rows = plug_in ? usual_base_rows : 1;
     if (!foam.air_rise_time) foam.air_rise_time = plug_in ? rise_time : 0.0;
   }
 

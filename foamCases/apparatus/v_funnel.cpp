@@ -18,6 +18,14 @@ class VFunnelCase : public Vessel {
   VFunnelCase(const scenes::VFunnel& funnel, const scenes::Scene& scene) : Vessel(scene), funnel_(funnel) {}
 
   bool leans() const override { return true; }
+  double estimated_cells() const override {
+    const double cell = scene().foam.cell;
+    return estimated_over(0.5 * std::sqrt(funnel_.outlet_width * funnel_.top_width), cell) *
+           estimated_over(0.5 * funnel_.depth, cell) * (estimated_over(funnel_.height(), cell) + 5.0);
+  }
+  /// Concrete falls out of it, and air behind, for as long as a run lasts, and leaves the mesh shortly below
+  /// the outlet.
+  std::optional<double> lasting_speed() const override { return fall_speed(); }
   std::array<Point, 2> initial_box() const override {
     return {Point{-far, -far, 0.0}, Point{far, far, funnel_.height()}};
   }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mpm/cost.h"
 #include "mpm/gauges/gauges.h"
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/noise.h"
@@ -27,7 +28,6 @@
 #include "runs/resolution.h"
 #include "runs/run_folder.h"
 #include "runs/verdict.h"
-#include "scenes/cost.h"
 #include "scenes/pieces.h"
 #include "scenes/step_limits.h"
 
@@ -92,7 +92,7 @@ class MpmRun {
       describe();
       return loop();
     } catch (const std::exception&) {
-      const runs::Failure failure = runs::failure_at_hand(scenes::mpm_cost(scene_).memory);
+      const runs::Failure failure = runs::failure_at_hand(cost(scene_).memory);
       note_failure(failure);
       runs::throw_again(failure);
     }
@@ -506,7 +506,7 @@ RunResult within_memory(const scenes::Scene& scene, Make make) {
   try {
     return make();
   } catch (const std::bad_alloc&) {
-    runs::throw_again(runs::failure_at_hand(scenes::mpm_cost(scene).memory));
+    runs::throw_again(runs::failure_at_hand(cost(scene).memory));
   }
 }
 
