@@ -35,6 +35,14 @@ struct Case {
       fault(path, fmt::format("{} is {:g} m, larger than the {} ({:g} m); allowed: at most {:g}", path, cell,
                               body, smallest, smallest));
   }
+  /// What is deeper or longer than the body is read nowhere. `key`: one of gauges; `sizes`: the keys that `most`
+  /// follows from.
+  void check_gauge(const std::string& key, double length, const std::string& what, double most,
+                   std::initializer_list<std::string> sizes) const {
+    if (!given.gives(key) || !usable({key}) || !usable(sizes) || length < most) return;
+    fault(key,
+          fmt::format("{} is {:g} m, and {} is {:g} m; allowed: less than that", key, length, what, most));
+  }
 };
 
 }  // namespace flowrest::scenes

@@ -222,34 +222,6 @@ void check_size(const Case& c) {
   }
 }
 
-/// What is deeper or longer than the body is read nowhere.
-void check_gauges(const Case& c) {
-  const Scene& scene = c.scene();
-  const auto check_length = [&](const std::string& key, double length, const std::string& what, double most,
-                                std::initializer_list<std::string> sizes) {
-    if (!c.given.gives(key) || !c.usable({key}) || !c.usable(sizes) || length < most) return;
-    c.fault(key,
-            fmt::format("{} is {:g} m, and {} is {:g} m; allowed: less than that", key, length, what, most));
-  };
-  const Gauges& gauges = scene.gauges;
-  const double height = scene.body_height();
-  if (scene.kind() == Kind::slump)
-    check_length("gauges.spread_depth", gauges.spread_depth, "the cone's height", height,
-                 {"geometry.cone_height"});
-  if (scene.kind() == Kind::v_funnel)
-    check_length("gauges.light_depth", gauges.light_depth, "the funnel's height", height,
-                 {"geometry.taper_height", "geometry.neck_height"});
-  if (scene.kind() == Kind::l_box || scene.kind() == Kind::dam_break) {
-    const bool box = scene.kind() == Kind::l_box;
-    check_length("gauges.front_depth", gauges.front_depth,
-                 box ? "the reservoir's height" : "the column's height", height,
-                 {"geometry.reservoir_height", "geometry.column_height"});
-    check_length("gauges.end_length", gauges.end_length, box ? "the channel's length" : "the tank's length",
-                 box ? scene.l_box().channel_length : scene.dam_break().tank_length,
-                 {"geometry.channel_length", "geometry.tank_length"});
-  }
-}
-
 void check_outputs(const Case& c) {
   const Output& output = c.scene().output;
   const std::pair<std::string, double> intervals[] = {
@@ -276,7 +248,7 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
   check_thixotropy(c);
   check_b_bar(c);
   check_outputs(c);
-  check_gauges(c);
+  std::visit([&](const auto& a) { a.check_gauges(c); }, draft.scene.geometry.apparatus);
   if (!step_is_known(c)) return;
   check_fall(c);
   check_size(c);

@@ -4,15 +4,6 @@
 
 namespace flowrest::scenes {
 
-const NameTable<Kind>& names_of(Kind) {
-  static const NameTable<Kind> table = {{Kind::slump, "slump"},
-                                        {Kind::duct, "duct"},
-                                        {Kind::l_box, "l-box"},
-                                        {Kind::v_funnel, "v-funnel"},
-                                        {Kind::dam_break, "dam-break"}};
-  return table;
-}
-
 const NameTable<Dimension>& names_of(Dimension) {
   static const NameTable<Dimension> table = {{Dimension::axisymmetric, "axisymmetric"},
                                              {Dimension::plane, "plane"},
@@ -104,7 +95,6 @@ std::string name_of(Choice choice) {
 
 }  // namespace
 
-std::string to_string(Kind choice) { return name_of(choice); }
 std::string to_string(Dimension choice) { return name_of(choice); }
 std::string to_string(Model choice) { return name_of(choice); }
 std::string to_string(Scheme choice) { return name_of(choice); }

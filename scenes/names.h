@@ -12,7 +12,6 @@ namespace flowrest::scenes {
 template <class Choice>
 using NameTable = std::vector<std::pair<Choice, std::string>>;
 
-const NameTable<Kind>& names_of(Kind);
 const NameTable<Dimension>& names_of(Dimension);
 const NameTable<Model>& names_of(Model);
 const NameTable<Scheme>& names_of(Scheme);

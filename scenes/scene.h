@@ -15,10 +15,6 @@
 /// The scene: what is simulated, read from TOML, checked and resolved once for every solver, in SI units.
 namespace flowrest::scenes {
 
-/// The place of an apparatus in the list, by name.
-enum class Kind { slump, duct, l_box, v_funnel, dam_break };
-std::string to_string(Kind);
-
 struct Geometry {
   Dimension dimension = Dimension::axisymmetric;
   Apparatus apparatus;
@@ -208,7 +204,6 @@ struct Scene {
   const LBox& l_box() const { return std::get<LBox>(geometry.apparatus); }
   const VFunnel& v_funnel() const { return std::get<VFunnel>(geometry.apparatus); }
   const DamBreak& dam_break() const { return std::get<DamBreak>(geometry.apparatus); }
-  Kind kind() const { return static_cast<Kind>(geometry.apparatus.index()); }
   MainGauge main_gauge() const;
   /// Height of the material at the start, m.
   double body_height() const;

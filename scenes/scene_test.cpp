@@ -56,7 +56,7 @@ TEST(Scene, ReadsWhatIsGiven) {
   EXPECT_EQ(scene.name, "slump");
   EXPECT_EQ(scene.path, "some/folder/slump.toml");
   EXPECT_EQ(scene.source, slump_text);
-  EXPECT_EQ(scene.kind(), Kind::slump);
+  EXPECT_EQ(name_of(scene.geometry.apparatus), "slump");
   EXPECT_THAT(scene.runs.mpm, ElementsAre(Model::elasto_viscoplastic));
   EXPECT_THAT(scene.runs.foam, ElementsAre(Model::papanastasiou));
   EXPECT_TRUE(scene.runs.exact);

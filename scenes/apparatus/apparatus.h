@@ -17,9 +17,9 @@
 ///
 /// Every apparatus has: `name`, as scenes and run.json have it; `dimensions()`, `usual_dimension` and
 /// `dimensions_meaning`; `under_gravity`; `rests`, whether a run ends at rest unless the scene says
-/// otherwise; `keys()`; `body_height()` and
-/// `body_size()`, m, by which lengths are carried from one body to another; `check`, which refuses sizes that cannot be; `load`, what a
-/// yield stress would have to hold; and `pieces`, what it is made of.
+/// otherwise; `keys()`; `body_height()` and `body_size()`, m, by which lengths are carried from one body to
+/// another; `check` and `check_gauges`, which refuse sizes, and depths of gauges, that cannot be; `load`, what
+/// a yield stress would have to hold; and `pieces`, what it is made of.
 namespace flowrest::scenes {
 
 using Apparatus = std::variant<Slump, Duct, LBox, VFunnel, DamBreak>;

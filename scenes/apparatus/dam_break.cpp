@@ -29,6 +29,14 @@ void DamBreak::check(const Case& c) const {
   c.check_cell("mpm.cell", c.scene().mpm.cell, "column", std::min(column_length, column_height));
 }
 
+void DamBreak::check_gauges(const Case& c) const {
+  const Gauges& gauges = c.scene().gauges;
+  c.check_gauge("gauges.front_depth", gauges.front_depth, "the column's height", body_height(),
+                {"geometry.column_height"});
+  c.check_gauge("gauges.end_length", gauges.end_length, "the tank's length", tank_length,
+                {"geometry.tank_length"});
+}
+
 std::optional<Load> DamBreak::load(const Scene& scene) const { return standing_load(scene, "the column"); }
 
 Pieces DamBreak::pieces(const Scene& scene) const {

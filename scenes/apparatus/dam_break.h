@@ -23,6 +23,7 @@ struct DamBreak {
   double body_height() const { return column_height; }
   double body_size() const { return body_height(); }
   void check(const Case&) const;
+  void check_gauges(const Case&) const;
   /// What there is to be held; nothing where walls let it slide, whatever it yields at.
   std::optional<Load> load(const Scene&) const;
   Pieces pieces(const Scene&) const;

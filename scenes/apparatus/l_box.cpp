@@ -84,6 +84,14 @@ void LBox::check(const Case& c) const {
   c.check_cell("mpm.cell", c.scene().mpm.cell, "channel", std::min(channel_height, 0.5 * width));
 }
 
+void LBox::check_gauges(const Case& c) const {
+  const Gauges& gauges = c.scene().gauges;
+  c.check_gauge("gauges.front_depth", gauges.front_depth, "the reservoir's height", body_height(),
+                {"geometry.reservoir_height"});
+  c.check_gauge("gauges.end_length", gauges.end_length, "the channel's length", channel_length,
+                {"geometry.channel_length"});
+}
+
 std::optional<Load> LBox::load(const Scene& scene) const { return standing_load(scene, "the reservoir"); }
 
 Pieces LBox::pieces(const Scene& scene) const {

@@ -142,6 +142,11 @@ void Slump::check(const Case& c) const {
   check_mesh(*this, c);
 }
 
+void Slump::check_gauges(const Case& c) const {
+  c.check_gauge("gauges.spread_depth", c.scene().gauges.spread_depth, "the cone's height", body_height(),
+                {"geometry.cone_height"});
+}
+
 std::optional<Load> Slump::load(const Scene& scene) const { return standing_load(scene, "the cone"); }
 
 Pieces Slump::pieces(const Scene& scene) const {

@@ -80,6 +80,11 @@ void VFunnel::check(const Case& c) const {
   c.check_cell("mpm.cell", c.scene().mpm.cell, "half of the outlet", 0.5 * std::min(outlet_width, depth));
 }
 
+void VFunnel::check_gauges(const Case& c) const {
+  c.check_gauge("gauges.light_depth", c.scene().gauges.light_depth, "the funnel's height", body_height(),
+                {"geometry.taper_height", "geometry.neck_height"});
+}
+
 std::optional<Load> VFunnel::load(const Scene& scene) const {
   const Load squeezed = standing_load(scene, "the material in the funnel");
   if (scene.base.law != Wall::no_slip) return squeezed;

@@ -31,6 +31,7 @@ struct VFunnel {
   double body_height() const { return height(); }
   double body_size() const { return body_height(); }
   void check(const Case&) const;
+  void check_gauges(const Case&) const;
   /// What there is to be held; nothing where walls let it slide, whatever it yields at.
   std::optional<Load> load(const Scene&) const;
   Pieces pieces(const Scene&) const;
