@@ -85,6 +85,15 @@ class Grid {
     for (int a = 0; a < Dim; ++a) sum += along(a, cell[static_cast<std::size_t>(a)]);
     return sum;
   }
+  /// The cell of a node.
+  Cell<Dim> cell(std::size_t index) const {
+    Cell<Dim> cell;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      cell[a] = axes_[a].first + static_cast<int>(index / axes_[a].stride);
+      index %= axes_[a].stride;
+    }
+    return cell;
+  }
   /// A cell's own name: along a periodic axis that within the period.
   Cell<Dim> wrapped(Cell<Dim> cell) const {
     for (std::size_t a = 0; a < Dim; ++a)

@@ -7,6 +7,7 @@
 #include "laws/test_dual.h"
 #include "mpm/plain/solver.h"
 #include "mpm/plain/step.h"
+#include "mpm/sampling/feed.h"
 #include "mpm/solver/test_bodies.h"
 
 namespace flowrest::mpm {
@@ -272,6 +273,59 @@ TEST(Plain, MeetsWallsOfAnyShapeAsTheKernelsDo) {
       EXPECT_GT(pair.largest_push(), 0.0);
       EXPECT_LT(pair.difference_of_pushes(), 1e-9 * pair.largest_push());
     }
+}
+
+/// A strand begins to be printed: half a tube moves over a floor, fed while it goes, and some of it is taken out.
+TEST(Plain, PrintsAsTheKernelsDo) {
+  SolverSettings s = with_law(test::concrete({3, false}), laws::Law::elasto_viscoplastic, true);
+  s.cell = 0.0125 / 2.5;
+  s.bounds[1].lower = PlaneWall::slip;
+  s.bounds[2].lower = PlaneWall::no_slip;
+  s.density_correction = 1.0;
+  Nozzle nozzle;
+  nozzle.bore = 0.0125;
+  nozzle.wall = 0.004;
+  nozzle.mouth = [](double time) -> Vector { return {0.02 + 0.3 * time, 0.0, 0.0125}; };
+  nozzle.extruded = [](double time) { return 0.34 * time; };
+  s.nozzle = nozzle;
+  Feed feed(nozzle, s.cell, 2, true, 0.3);
+  // Each particle's volume tells it apart.
+  std::size_t number = 0;
+  const auto due = [&](double time) {
+    auto seeds = feed.due(time, 1e-3);
+    for (Seed& seed : seeds) seed.volume *= 1.0 + 1e-6 * static_cast<double>(++number);
+    return seeds;
+  };
+  Pair pair(s, due(0.0));
+  const double step = 0.5 * test::usual_step(s);
+  double worst = 0.0, apart = 0.0, force = 0.0, taken[2] = {};
+  for (int i = 0; i < steps; ++i) {
+    const double time = i * step;
+    pair.both([&](Solver& solver) { solver.set_time(time); });
+    pair.step(step, {0.0, 0.0, -gravity});
+    const auto come = due(time + step);
+    int which = 0;
+    double forces[2] = {};
+    pair.both([&](Solver& solver) {
+      forces[which] = solver.nozzle_force()[0];
+      const bool take = i == steps / 2;
+      if (take || !come.empty())
+        solver.exchange([&](const Vector& x) { return take && x[0] < 0.03; },
+                        [&](const ParticleBatch& batch) {
+                          for (const double m : batch.mass) taken[which] += m;
+                        },
+                        come);
+      ++which;
+    });
+    force = std::max(force, std::abs(forces[0]));
+    apart = std::max(apart, std::abs(forces[0] - forces[1]));
+    if (i % 20 == 19) worst = std::max(worst, pair.difference());
+  }
+  EXPECT_GT(number, 300U);
+  EXPECT_GT(taken[0], 0.0);
+  EXPECT_NEAR(taken[0], taken[1], 1e-12 * taken[0]);
+  EXPECT_LT(worst, 1e-10);
+  EXPECT_LT(apart, 1e-9 * force);
 }
 
 TEST(Plain, GoesOnFromItsOwnStateAndFromTheKernels) {

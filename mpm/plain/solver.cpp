@@ -30,6 +30,7 @@ Numerics numerics_of(const SolverSettings& s) {
   return {.axisymmetric = s.axisymmetric,
           .cell = s.cell,
           .bounds = s.bounds,
+          .nozzle = s.nozzle,
           .dilatation = s.b_bar(),
           .explicit_fluid = s.explicit_fluid,
           .free_surface = s.free_surface,
@@ -83,22 +84,25 @@ void visit_number(P& p, bool thixotropic, int wanted, const Use& use) {
 }
 
 template <class T, int Dim>
+Particle<T, Dim> particle_of(const SolverSettings& settings, const Seed& seed) {
+  Particle<T, Dim> p;
+  p.cell = cell_of<Dim>(seed.cell);
+  for (std::size_t a = 0; a < Dim; ++a) {
+    const T last = T(1) - T(0.5) * std::numeric_limits<T>::epsilon();
+    p.place[a] = std::clamp(static_cast<T>(seed.position[a]), T(0), last);
+    p.velocity[a] = static_cast<T>(seed.velocity[a]);
+  }
+  p.mass = static_cast<T>(seed.volume * settings.density);
+  p.volume_ratio = static_cast<T>(seed.volume_ratio);
+  p.pressure = material_of<T>(settings).state.pressure(p.volume_ratio);
+  if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
+  return p;
+}
+
+template <class T, int Dim>
 std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const SeedSource& seeds) {
   std::vector<Particle<T, Dim>> particles;
-  const laws::EquationOfState<T> state = material_of<T>(settings).state;
-  seeds([&](const Seed& seed) {
-    Particle<T, Dim>& p = particles.emplace_back();
-    p.cell = cell_of<Dim>(seed.cell);
-    for (std::size_t a = 0; a < Dim; ++a) {
-      const T last = T(1) - T(0.5) * std::numeric_limits<T>::epsilon();
-      p.place[a] = std::clamp(static_cast<T>(seed.position[a]), T(0), last);
-      p.velocity[a] = static_cast<T>(seed.velocity[a]);
-    }
-    p.mass = static_cast<T>(seed.volume * settings.density);
-    p.volume_ratio = static_cast<T>(seed.volume_ratio);
-    p.pressure = state.pressure(p.volume_ratio);
-    if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
-  });
+  seeds([&](const Seed& seed) { particles.push_back(particle_of<T, Dim>(settings, seed)); });
   return particles;
 }
 
@@ -141,6 +145,7 @@ class PlainSolver final : public Solver {
     const double kept = std::max(0.0, 1.0 - step / std::max(apic_relaxation_time_, step));
     const Outcome<T> outcome = body_.step(time_, static_cast<T>(step), driving, static_cast<T>(kept));
     time_ += step;
+    step_ = step;
     times_.particles_to_grid += now() - begin;
     require_stable(outcome.faults, value(outcome.dissipated), step);
     return {.largest_speed = outcome.largest_speed,
@@ -161,27 +166,32 @@ class PlainSolver final : public Solver {
     return force;
   }
 
-  void visit_motion(const std::function<void(const ParticleBatch&)>& use) override { use(motion()); }
-
-  void visit(const std::function<void(const ParticleBatch&)>& use) override {
-    ParticleBatch batch = motion();
-    const laws::EquationOfState<double>& state = settings_.state;
-    if (settings_.b_bar() == Dilatation::smooth)
-      for (const T& pressure : body_.acting_pressure()) batch.acting_pressure.push_back(value(pressure));
-    for (const Particle<T, Dim>& p : body_.particles()) {
-      const double ratio = value(p.volume_ratio), stress = value(p.stress.invariant());
-      const double at_rest = value(p.mass) / settings_.density;  // m3
-      const double shape =
-          settings_.explicit_fluid ? 0.0 : stress * stress / (2.0 * state.shear(ratio)) * ratio;
-      batch.volume.push_back(at_rest * ratio);
-      batch.rate.push_back(value(p.rate));
-      batch.shear_stress.push_back(stress);
-      batch.raw_pressure.push_back(value(p.pressure));
-      batch.elastic_energy.push_back(at_rest * (shape + state.energy(ratio)));
-      if (settings_.thixotropic) batch.flocculation.push_back(value(p.flocculation));
-    }
-    use(batch);
+  mpm::Vector nozzle_force() const override {
+    mpm::Vector force{};
+    for (std::size_t c = 0; c < Dim; ++c) force[c] = value(body_.nozzle_impulse()[c]) / step_;
+    return force;
   }
+
+  void exchange(const std::function<bool(const mpm::Vector&)>& leaves,
+                const std::function<void(const ParticleBatch&)>& use,
+                const std::vector<Seed>& come) override {
+    const ParticleBatch all = everything();
+    ParticleBatch leaving;
+    std::vector<Particle<T, Dim>> particles;
+    for (std::size_t q = 0; q < all.count; ++q) {
+      if (leaves({all.position[0][q], all.position[1][q], all.position[2][q]})) {
+        leaving.add(all, q);
+      } else {
+        particles.push_back(body_.particles()[q]);
+      }
+    }
+    if (leaving.count > 0) use(leaving);
+    for (const Seed& seed : come) particles.push_back(particle_of<T, Dim>(settings_, seed));
+    body_.take(std::move(particles));
+  }
+
+  void visit_motion(const std::function<void(const ParticleBatch&)>& use) override { use(motion()); }
+  void visit(const std::function<void(const ParticleBatch&)>& use) override { use(everything()); }
 
   void visit_cells(const std::function<void(std::span<const CellIndex>)>& use) override {
     std::vector<CellIndex> cells;
@@ -248,10 +258,31 @@ class PlainSolver final : public Solver {
     return batch;
   }
 
+  ParticleBatch everything() const {
+    ParticleBatch batch = motion();
+    const laws::EquationOfState<double>& state = settings_.state;
+    if (settings_.b_bar() == Dilatation::smooth)
+      for (const T& pressure : body_.acting_pressure()) batch.acting_pressure.push_back(value(pressure));
+    for (const Particle<T, Dim>& p : body_.particles()) {
+      const double ratio = value(p.volume_ratio), stress = value(p.stress.invariant());
+      const double at_rest = value(p.mass) / settings_.density;  // m3
+      const double shape =
+          settings_.explicit_fluid ? 0.0 : stress * stress / (2.0 * state.shear(ratio)) * ratio;
+      batch.volume.push_back(at_rest * ratio);
+      batch.rate.push_back(value(p.rate));
+      batch.shear_stress.push_back(stress);
+      batch.raw_pressure.push_back(value(p.pressure));
+      batch.elastic_energy.push_back(at_rest * (shape + state.energy(ratio)));
+      if (settings_.thixotropic) batch.flocculation.push_back(value(p.flocculation));
+    }
+    return batch;
+  }
+
   SolverSettings settings_;
   Body<T, Dim> body_;
   double apic_relaxation_time_ = 0.0;
   double time_ = 0.0;  ///< s
+  double step_ = 1.0;  ///< s, the last one
   StageTimes times_;
   std::string instruction_set_ = "generic";
 };

@@ -4,9 +4,11 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "laws/equation_of_state.h"
 #include "laws/law.h"
+#include "mpm/boundary/nozzle.h"
 #include "mpm/plain/contact.h"
 #include "mpm/plain/grid.h"
 #include "mpm/plain/tensor.h"
@@ -34,6 +36,7 @@ struct Numerics {
   bool axisymmetric = false;
   double cell = 0.0;  ///< m
   std::array<AxisBounds, 3> bounds{};
+  std::optional<Nozzle> nozzle;                ///< in three dimensions
   Dilatation dilatation = Dilatation::smooth;  ///< or the cell average
   bool explicit_fluid = false;  ///< a fluid's stress is that of its rate, else found implicitly
   bool free_surface = true;     ///< where there is none, as in a duct, every cell is full and stays so
@@ -61,7 +64,7 @@ struct Outcome {
   double largest_speed = 0.0;     ///< m/s
   double largest_pressure = 0.0;  ///< Pa
   T dissipated{};                 ///< J
-  T wall_work{};                  ///< J, of walls of any shape
+  T wall_work{};                  ///< J, of walls of any shape and a nozzle
   T momentum{};                   ///< kg m/s along the first axis, of the velocities that moved the particles
   std::uint32_t faults = 0;       ///< particles that moved further than a cell, or are no longer finite
 };
@@ -73,11 +76,13 @@ class Body {
 
   Body(const Material<T>& material, const Numerics& numerics, std::unique_ptr<Contact<T, Dim>> walls,
        std::vector<Particle<T, Dim>> particles)
-      : material_(material),
-        numerics_(numerics),
-        grid_(numerics.bounds),
-        walls_(std::move(walls)),
-        particles_(std::move(particles)) {
+      : material_(material), numerics_(numerics), grid_(numerics.bounds), walls_(std::move(walls)) {
+    take(std::move(particles));
+  }
+
+  /// Takes these particles instead of those that it has.
+  void take(std::vector<Particle<T, Dim>> particles) {
+    particles_ = std::move(particles);
     cover_and_sort();
     update_volumes(T(0));
   }
@@ -88,7 +93,8 @@ class Body {
     Outcome<T> outcome;
     particles_to_grid(dt);
     forces_to_velocities(dt, acceleration);
-    if (walls_) outcome.wall_work = hold_to_walls(time, dt, acceleration);
+    if (numerics_.nozzle) outcome.wall_work = hold_to_nozzle(time, dt);
+    if (walls_) outcome.wall_work += hold_to_walls(time, dt, acceleration);
     hold_to_planes(keep);
     grid_to_particles(dt, keep);
     average_dilatation();
@@ -102,6 +108,8 @@ class Body {
   const std::vector<Particle<T, Dim>>& particles() const { return particles_; }
   const Grid<T, Dim>& grid() const { return grid_; }
   Contact<T, Dim>* walls() const { return walls_.get(); }
+  /// Of the nozzle on the material in the last step, kg m/s.
+  const Vector& nozzle_impulse() const { return nozzle_impulse_; }
   std::size_t occupied_cells() const { return cells_.size(); }
 
   /// The pressure that acts on every particle: what the particles around it, or in its cell, have on average.
@@ -188,6 +196,30 @@ class Body {
       if (carries(node))
         for (std::size_t i = 0; i < Dim; ++i)
           node.velocity[i] = (node.momentum[i] + node.impulse[i]) / node.mass;
+  }
+
+  /// A nozzle moves what is in it (boundary/nozzle.h). Returns its work on the material, J.
+  T hold_to_nozzle(double time, const T& dt) {
+    T work(0);
+    nozzle_impulse_ = {};
+    if (time >= numerics_.nozzle->gone_at) return work;
+    const NozzleMotion motion(*numerics_.nozzle, time, value(dt), numerics_.cell);
+    for (std::size_t n = 0; n < grid_.size(); ++n) {
+      Node<T, Dim>& node = grid_.node(n);
+      if (!carries(node)) continue;
+      const Cell<Dim> cell = grid_.cell(n);
+      mpm::Vector place{};
+      for (std::size_t a = 0; a < Dim; ++a) place[a] = (cell[a] + 0.5) * numerics_.cell;
+      const auto held = motion.at(place);
+      if (!held) continue;
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const T impulse = node.mass * (T((*held)[a]) - node.velocity[a]);
+        node.velocity[a] = T((*held)[a]);
+        nozzle_impulse_[a] += impulse;
+        work += impulse * T((*held)[a]);
+      }
+    }
+    return work;
   }
 
   /// Walls of any shape change the new velocities (contact.h).
@@ -597,6 +629,7 @@ class Body {
   std::vector<Particle<T, Dim>> particles_, sorted_;
   std::vector<std::pair<std::size_t, std::size_t>> cells_;  ///< particles of each cell: from, to
   std::vector<Motion> motions_;
+  Vector nozzle_impulse_{};
 };
 
 }  // namespace flowrest::mpm::plain

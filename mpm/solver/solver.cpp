@@ -47,19 +47,8 @@ class SolverOf final : public Solver {
     std::vector<CellIndex> cells;
     seeds([&](const Seed& seed) { cells.push_back(seed.cell); });
     const std::vector<std::uint32_t> places = find_places(std::move(cells));
-    const ParticleView<T>& v = particles_.view();
     auto place = places.begin();
-    seeds([&](const Seed& seed) {
-      const std::uint32_t at = *place++;
-      for (std::size_t a = 0; a < static_cast<std::size_t>(settings.dimension); ++a) {
-        v.position[a][at] = std::clamp(static_cast<T>(seed.position[a]), lowest_in_cell(), highest_in_cell());
-        v.velocity[a][at] = static_cast<T>(seed.velocity[a]);
-      }
-      v.mass[at] = static_cast<T>(seed.volume * settings.density);
-      v.volume_ratio[at] = static_cast<T>(seed.volume_ratio);
-      v.pressure[at] = parameters_.state.at(v.volume_ratio[at]).pressure;
-      if (v.lambda) v.lambda[at] = static_cast<T>(seed.flocculation);
-    });
+    seeds([&](const Seed& seed) { sow(seed, *place++); });
     begin();
   }
 
@@ -72,6 +61,42 @@ class SolverOf final : public Solver {
     }
     tile_capacity_ = std::max(state.tile_capacity, usual_tile_capacity);
     if (contact_) contact_->set_forces(state.wall_forces);
+    begin();
+  }
+
+  void exchange(const std::function<bool(const Vector&)>& leaves,
+                const std::function<void(const ParticleBatch&)>& use,
+                const std::vector<Seed>& come) override {
+    settle();
+    const auto arrays = static_cast<std::size_t>(particles_.array_count());
+    std::vector<CellIndex> cells;
+    std::vector<std::vector<T>> kept(arrays);
+    ParticleBatch batch, leaving;
+    for (const auto slot : blocks_.occupied()) {
+      const BlockView block = blocks_.view(slot);
+      const std::vector<CellIndex> of_block = blocks_.cells_of(slot);
+      fill(batch, block);
+      leaving.clear();
+      for (std::size_t i = 0; i < batch.count; ++i) {
+        if (leaves({batch.position[0][i], batch.position[1][i], batch.position[2][i]})) {
+          leaving.add(batch, i);
+          continue;
+        }
+        cells.push_back(of_block[i]);
+        for (std::size_t k = 0; k < arrays; ++k)
+          kept[k].push_back(particles_.array(static_cast<int>(k))[block.first + i]);
+      }
+      if (leaving.count > 0) use(leaving);
+    }
+    const std::size_t stay = cells.size();
+    for (const Seed& seed : come) cells.push_back(seed.cell);
+    blocks_ = SparseBlocks(settings_.dimension, settings_.bounds);
+    make_walls();
+    const std::vector<std::uint32_t> places = find_places(std::move(cells));
+    for (std::size_t k = 0; k < arrays; ++k)
+      for (std::size_t p = 0; p < stay; ++p) particles_.array(static_cast<int>(k))[places[p]] = kept[k][p];
+    for (std::size_t p = 0; p < come.size(); ++p) sow(come[p], places[stay + p]);
+    parameters_.step = T(0);  // volumes have taken up the last step's dilatation
     begin();
   }
 
@@ -92,6 +117,11 @@ class SolverOf final : public Solver {
 
   void set_apic_relaxation_time(double time) override { apic_relaxation_time_ = time; }
   void set_time(double time) override { time_ = time; }
+  Vector nozzle_force() const override {
+    Vector force = nozzle_ ? nozzle_->impulse() : Vector{};
+    for (double& f : force) f /= static_cast<double>(parameters_.step);
+    return force;
+  }
   Vector wall_force(std::size_t wall) const override { return contact_ ? contact_->force(wall) : Vector{}; }
 
   void visit(const std::function<void(const ParticleBatch&)>& use) override {
@@ -186,19 +216,40 @@ class SolverOf final : public Solver {
     const double full =
         settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
     p.smallest_mass = static_cast<T>(full * 1e-25);
-    const typename PlaneFriction<T>::Grid planes{
-        settings.dimension, settings.transfer == Transfer::quadratic_apic, settings.bounds};
-    if (PlaneFriction<T>::is_needed(planes)) plane_friction_ = std::make_unique<PlaneFriction<T>>(planes);
+    if (settings.nozzle) nozzle_ = std::make_unique<NozzleNodes<T>>(*settings.nozzle, settings.cell);
+    make_walls();
     if (settings.walls.empty()) return;
-    contact_ = std::make_unique<WallContact<T>>(
-        typename WallContact<T>::Grid{settings.dimension, settings.transfer == Transfer::quadratic_apic,
-                                      settings.cell, settings.bounds},
-        settings.walls, kernels_.contact);
-    nearby_walls_ = std::make_unique<NearbyWalls>(settings_.walls, settings.dimension, settings.cell);
     p.walls = this;
     p.keep_out = [](const void* self, WallSet near, double(&place)[3]) {
       return static_cast<const SolverOf*>(self)->keep_out(near, place);
     };
+  }
+
+  /// What holds the nodes of walls, which knows where blocks lie; forces at walls' points stay.
+  void make_walls() {
+    const bool quadratic = settings_.transfer == Transfer::quadratic_apic;
+    const typename PlaneFriction<T>::Grid planes{settings_.dimension, quadratic, settings_.bounds};
+    if (PlaneFriction<T>::is_needed(planes)) plane_friction_ = std::make_unique<PlaneFriction<T>>(planes);
+    if (settings_.walls.empty()) return;
+    const std::vector<double> forces = wall_forces();
+    contact_ = std::make_unique<WallContact<T>>(
+        typename WallContact<T>::Grid{settings_.dimension, quadratic, settings_.cell, settings_.bounds},
+        settings_.walls, kernels_.contact);
+    if (!forces.empty()) contact_->set_forces(forces);
+    nearby_walls_ = std::make_unique<NearbyWalls>(settings_.walls, settings_.dimension, settings_.cell);
+  }
+
+  /// Puts a particle to its place.
+  void sow(const Seed& seed, std::uint32_t at) {
+    const ParticleView<T>& v = particles_.view();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(settings_.dimension); ++a) {
+      v.position[a][at] = std::clamp(static_cast<T>(seed.position[a]), lowest_in_cell(), highest_in_cell());
+      v.velocity[a][at] = static_cast<T>(seed.velocity[a]);
+    }
+    v.mass[at] = static_cast<T>(seed.volume * settings_.density);
+    v.volume_ratio[at] = static_cast<T>(seed.volume_ratio);
+    v.pressure[at] = parameters_.state.at(v.volume_ratio[at]).pressure;
+    if (v.lambda) v.lambda[at] = static_cast<T>(seed.flocculation);
   }
 
   /// Room for particles in these cells. Returns their places.
@@ -393,6 +444,8 @@ class SolverOf final : public Solver {
   /// Holds the nodes to every wall that the arenas do not hold themselves. Planes of friction are asked again
   /// after walls of any shape, which lean on what the planes hold.
   void hold_walls(const Grid<T>& grid) {
+    if (nozzle_)
+      wall_work_ += nozzle_->hold(blocks_, time_, static_cast<double>(parameters_.step), grid.nodes);
     if (plane_friction_) plane_friction_->hold(grid.nodes);
     if (contact_) wall_work_ += contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
     if (plane_friction_ && contact_) plane_friction_->hold_again(grid.nodes);
@@ -530,6 +583,7 @@ class SolverOf final : public Solver {
   Kernels<T> kernels_;
   StepParameters<T> parameters_;
   double apic_relaxation_time_ = 0.0;
+  std::unique_ptr<NozzleNodes<T>> nozzle_;     ///< null where the settings have none
   std::unique_ptr<WallContact<T>> contact_;    ///< null where no wall but planes along the grid is given
   std::unique_ptr<NearbyWalls> nearby_walls_;  ///< likewise
   std::unique_ptr<PlaneFriction<T>> plane_friction_;  ///< null where no plane along the grid has friction
@@ -558,6 +612,24 @@ void require_stable(std::uint32_t faults, double dissipated, double step) {
         fmt::format("{} particles moved further than one cell in one step of {:.3g} s, or are no longer "
                     "finite: the step is unstable",
                     faults, step));
+}
+
+void ParticleBatch::clear() {
+  count = 0;
+  for (std::vector<double>* array : arrays()) array->clear();
+}
+
+void ParticleBatch::add(const ParticleBatch& other, std::size_t particle) {
+  ++count;
+  const auto to = arrays(), from = const_cast<ParticleBatch&>(other).arrays();
+  for (std::size_t k = 0; k < to.size(); ++k)
+    if (!from[k]->empty()) to[k]->push_back((*from[k])[particle]);
+}
+
+std::vector<std::vector<double>*> ParticleBatch::arrays() {
+  return {&position[0],  &position[1],   &position[2], &velocity[0],  &velocity[1],  &velocity[2],
+          &mass,         &volume,        &rate,        &shear_stress, &raw_pressure, &acting_pressure,
+          &flocculation, &elastic_energy};
 }
 
 SolverState Solver::state() {

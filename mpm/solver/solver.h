@@ -11,6 +11,7 @@
 
 #include "laws/equation_of_state.h"
 #include "laws/law.h"
+#include "mpm/boundary/nozzle.h"
 #include "mpm/boundary/walls.h"
 #include "mpm/solver/choices.h"
 #include "mpm/solver/layout.h"
@@ -38,9 +39,10 @@ struct SolverSettings {
   laws::Structure<double> structure;  ///< of what is thixotropic
   laws::EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
-  std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
-  int threads = 0;              ///< 0: as many as the particles can feed, of the cores that are ours
-  std::string instruction_set;  ///< empty: the best this machine runs
+  std::vector<Wall> walls;       ///< of any shape, beside the planes of `bounds`
+  std::optional<Nozzle> nozzle;  ///< in three dimensions, with quadratic functions
+  int threads = 0;               ///< 0: as many as the particles can feed, of the cores that are ours
+  std::string instruction_set;   ///< empty: the best this machine runs
 
   Dilatation b_bar() const {
     return dilatation.value_or(transfer == Transfer::quadratic_apic ? Dilatation::smooth
@@ -67,7 +69,7 @@ struct StepResult {
   double largest_speed = 0.0;     ///< m/s
   double largest_pressure = 0.0;  ///< Pa
   double dissipated = 0.0;        ///< J in this step
-  double wall_work = 0.0;         ///< J done in this step by walls that are not along the grid
+  double wall_work = 0.0;         ///< J done in this step by walls that are not along the grid, and nozzles
   double momentum = 0.0;          ///< kg m/s along the first axis, of the velocities that moved the particles
 };
 
@@ -84,6 +86,13 @@ struct ParticleBatch {
   std::vector<double> acting_pressure;  ///< Pa, averaged through the nodes; empty unless that is the B-bar
   std::vector<double> flocculation;     ///< empty without thixotropy
   std::vector<double> elastic_energy;   ///< J, of shape and volume
+
+  void clear();
+  /// Takes up a particle of another batch, of the same solver.
+  void add(const ParticleBatch& other, std::size_t particle);
+
+ private:
+  std::vector<std::vector<double>*> arrays();
 };
 
 /// CPU per stage of the steps so far.
@@ -124,6 +133,13 @@ class Solver {
   virtual void set_time(double) = 0;
   /// Force of a wall of the settings on the material in the last step, N.
   virtual Vector wall_force(std::size_t wall) const = 0;
+  /// Force of the nozzle on the material in the last step, N.
+  virtual Vector nozzle_force() const = 0;
+  /// Between two steps: takes out the particles for whose place (m) `leaves` is true, after `use` has seen them,
+  /// and puts others in. The rest keep all that they have, and their order in each cell.
+  virtual void exchange(const std::function<bool(const Vector&)>& leaves,
+                        const std::function<void(const ParticleBatch&)>& use,
+                        const std::vector<Seed>& come) = 0;
   /// Calls `use` for every block in turn.
   virtual void visit(const std::function<void(const ParticleBatch&)>& use) = 0;
   /// The same with positions, velocities and masses alone, which cost little.

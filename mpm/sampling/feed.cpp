@@ -1,0 +1,56 @@
+#include "mpm/sampling/feed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flowrest::mpm {
+
+namespace {
+
+constexpr double filled_cells = 2.0;  ///< above the mouth
+
+}  // namespace
+
+Feed::Feed(const Nozzle& nozzle, double cell, int per_axis, bool half, double flocculation)
+    : nozzle_(nozzle),
+      cell_(cell),
+      thickness_(cell / per_axis),
+      area_(std::numbers::pi * nozzle.bore * nozzle.bore * (half ? 0.5 : 1.0)),
+      flocculation_(flocculation) {
+  const int reach = static_cast<int>(std::ceil(nozzle.bore / thickness_));
+  for (int i = -reach; i < reach; ++i)
+    for (int j = half ? 0 : -reach; j < reach; ++j) {
+      const Site site{(i + 0.5) * thickness_, (j + 0.5) * thickness_};
+      if (std::hypot(site.x, site.y) < nozzle.bore) sites_.push_back(site);
+    }
+}
+
+std::vector<Seed> Feed::due(double time, double step) {
+  std::vector<Seed> seeds;
+  const Vector mouth = nozzle_.mouth(time), before = nozzle_.mouth(time - step);
+  const double extruded = nozzle_.extruded(time);
+  Seed seed;
+  for (std::size_t a = 0; a < 3; ++a) seed.velocity[a] = (mouth[a] - before[a]) / step;
+  seed.velocity[2] -= (extruded - nozzle_.extruded(time - step)) / step;
+  seed.flocculation = flocculation_;
+  while (begin_of(discs_) < nozzle_.column && begin_of(discs_) < extruded + filled_cells * cell_) {
+    const double begin = begin_of(discs_), end = end_of(discs_);
+    seed.volume = area_ * (end - begin) / static_cast<double>(sites_.size());
+    for (const Site& site : sites_) {
+      const Vector place = {mouth[0] + site.x, mouth[1] + site.y, mouth[2] + 0.5 * (begin + end) - extruded};
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double cells = place[a] / cell_;
+        seed.cell[a] = static_cast<std::int32_t>(std::floor(cells));
+        seed.position[a] = cells - std::floor(cells);
+      }
+      seeds.push_back(seed);
+    }
+    ++discs_;
+  }
+  return seeds;
+}
+
+double Feed::volume() const { return discs_ == 0 ? 0.0 : area_ * end_of(discs_ - 1); }
+
+}  // namespace flowrest::mpm

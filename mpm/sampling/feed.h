@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "mpm/boundary/nozzle.h"
+#include "mpm/solver/solver.h"
+
+namespace flowrest::mpm {
+
+/// Keeps a nozzle's bore filled from its mouth to two cells above it, with discs of particles that stand where
+/// the column is at the moment they come. Material s metres up the column passes the mouth when s metres have
+/// been extruded; discs are equally thick, and the last one is cut where the column ends, so that all of
+/// them together have the volume pi R^2 s, and so have those that have passed, to within a disc.
+class Feed {
+ public:
+  /// `per_axis` particles along each axis of a cell (m); `half`: only y > 0 is computed.
+  Feed(const Nozzle&, double cell, int per_axis, bool half, double flocculation);
+
+  /// The discs that are due at `time`, moving as the column has on average over the `step` s before.
+  std::vector<Seed> due(double time, double step);
+  /// How many have come: what a run that is gone on with begins from.
+  std::size_t discs() const { return discs_; }
+  void set_discs(std::size_t discs) { discs_ = discs; }
+  /// m3 of the computed part, of them all.
+  double volume() const;
+
+ private:
+  struct Site {
+    double x, y;  ///< m from the axis
+  };
+  double begin_of(std::size_t disc) const { return thickness_ * static_cast<double>(disc); }
+  double end_of(std::size_t disc) const { return std::min(begin_of(disc + 1), nozzle_.column); }
+
+  Nozzle nozzle_;
+  double cell_, thickness_, area_;
+  double flocculation_;
+  std::vector<Site> sites_;
+  std::size_t discs_ = 0;
+};
+
+}  // namespace flowrest::mpm
