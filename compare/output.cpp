@@ -126,6 +126,7 @@ const char* depth_key(scenes::MainGauge judged_by) {
     case scenes::MainGauge::discharge:
       return "light_depth_mm";
     case scenes::MainGauge::velocity:
+    case scenes::MainGauge::section:
       break;
   }
   return nullptr;

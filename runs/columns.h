@@ -122,6 +122,34 @@ inline constexpr Column thinnest_sight = {
     .may_be_empty = true,
     .read_at = "light_below_m",
     .threshold = [](const scenes::Gauges& g) { return g.light_depth; }};
+// Of the section behind a nozzle, once it has gone so far:
+inline constexpr Column strand_width = {
+    .name = "strand_width_mm",
+    .unit = "mm",
+    .meaning = "width of the strand's section behind the nozzle, the largest of its rows",
+    .per_si = 1e3,
+    .may_be_empty = true};
+inline constexpr Column strand_height = {.name = "strand_height_mm",
+                                         .unit = "mm",
+                                         .meaning = "height of that section, the largest of its columns",
+                                         .per_si = 1e3,
+                                         .may_be_empty = true};
+inline constexpr Column section_area = {
+    .name = "section_area_mm2", .unit = "mm2", .meaning = "its area", .per_si = 1e6, .may_be_empty = true};
+inline constexpr Column base_width = {.name = "base_width_mm",
+                                      .unit = "mm",
+                                      .meaning = "width of its lowest row, on the bed",
+                                      .per_si = 1e3,
+                                      .may_be_empty = true};
+inline constexpr Column area_over_balance = {
+    .name = "area_over_balance",
+    .unit = "",
+    .meaning = "its area over what the nozzle has fed per length of its way, over all layers",
+    .may_be_empty = true};
+inline constexpr Column nozzle_drag = {
+    .name = "nozzle_drag_N", .unit = "N", .meaning = "force of the nozzle on the material, along the bed"};
+inline constexpr Column nozzle_push = {
+    .name = "nozzle_push_N", .unit = "N", .meaning = "force of the nozzle on the material, downwards"};
 inline constexpr Column volume = {.name = "volume_m3", .unit = "m3", .meaning = "volume of the material"};
 inline constexpr Column volume_at_rest = {
     .name = "volume_at_rest_m3", .unit = "m3", .meaning = "volume that its mass fills without pressure"};

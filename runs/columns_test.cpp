@@ -30,7 +30,7 @@ TEST(Columns, EndInTheirUnit) {
       if (c == '/') c = '_';
     const std::string suffix = unit.empty() ? "" : "_" + unit;
     EXPECT_TRUE(std::string(column->name).ends_with(suffix)) << column->name << " in " << column->unit;
-    EXPECT_EQ(column->per_si, unit == "mm" ? 1e3 : 1.0) << column->name;
+    EXPECT_EQ(column->per_si, unit == "mm" ? 1e3 : unit == "mm2" ? 1e6 : 1.0) << column->name;
   }
 }
 

@@ -36,6 +36,8 @@ std::vector<const Column*> own_columns(scenes::MainGauge gauge) {
       return {&column::discharged, &column::thinnest_sight};
     case scenes::MainGauge::velocity:
       return {&column::plug_velocity, &column::mean_velocity};
+    case scenes::MainGauge::section:
+      return {&column::strand_width, &column::strand_height, &column::section_area, &column::base_width};
   }
   return {};
 }

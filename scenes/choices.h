@@ -8,10 +8,12 @@
 namespace flowrest::scenes {
 
 /// What an apparatus is judged by: how far material spreads from a middle or runs along a channel, what of it
-/// has run out, or how fast it flows.
-enum class MainGauge { spread, front, discharge, velocity };
+/// has run out, how fast it flows, or which section a strand has.
+enum class MainGauge { spread, front, discharge, velocity, section };
 /// What is computed of a body: `half` and `quarter` are cut along its planes of symmetry.
 enum class Dimension { axisymmetric, plane, half, quarter, full };
+/// Which way the layers of a print are laid after the first: all alike, or to and fro.
+enum class PrintDirection { same, alternating };
 using Model = laws::Law;
 enum class Scheme { quadratic_apic, linear_flip, paper };
 enum class Precision { double_precision, single_precision };
@@ -34,6 +36,7 @@ enum class FoamWetting { fraction, geometric };
 
 /// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Dimension);
+std::string to_string(PrintDirection);
 std::string to_string(Model);
 std::string to_string(Scheme);
 std::string to_string(Precision);

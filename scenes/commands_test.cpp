@@ -29,8 +29,8 @@ std::string output_of(std::vector<std::string> arguments) {
 
 TEST(ScenesCommand, ListsEverySceneWithItsTitle) {
   const std::string output = output_of({"scenes"});
-  EXPECT_THAT(output, HasSubstr("roussel-slump         Roussel slump flow\n"));
-  EXPECT_THAT(output, HasSubstr("poiseuille-step-down  Poiseuille flow stepped down below yield\n"));
+  EXPECT_THAT(output, HasSubstr("roussel-slump          Roussel slump flow\n"));
+  EXPECT_THAT(output, HasSubstr("poiseuille-step-down   Poiseuille flow stepped down below yield\n"));
 }
 
 TEST(ScenesCommand, PrintsEveryKey) {

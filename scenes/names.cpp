@@ -13,6 +13,12 @@ const NameTable<Dimension>& names_of(Dimension) {
   return table;
 }
 
+const NameTable<PrintDirection>& names_of(PrintDirection) {
+  static const NameTable<PrintDirection> table = {{PrintDirection::same, "same"},
+                                                  {PrintDirection::alternating, "alternating"}};
+  return table;
+}
+
 const NameTable<Model>& names_of(Model) {
   static const NameTable<Model> table = [] {
     NameTable<Model> names;
@@ -96,6 +102,7 @@ std::string name_of(Choice choice) {
 }  // namespace
 
 std::string to_string(Dimension choice) { return name_of(choice); }
+std::string to_string(PrintDirection choice) { return name_of(choice); }
 std::string to_string(Model choice) { return name_of(choice); }
 std::string to_string(Scheme choice) { return name_of(choice); }
 std::string to_string(Precision choice) { return name_of(choice); }

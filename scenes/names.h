@@ -13,6 +13,7 @@ template <class Choice>
 using NameTable = std::vector<std::pair<Choice, std::string>>;
 
 const NameTable<Dimension>& names_of(Dimension);
+const NameTable<PrintDirection>& names_of(PrintDirection);
 const NameTable<Model>& names_of(Model);
 const NameTable<Scheme>& names_of(Scheme);
 const NameTable<Precision>& names_of(Precision);

@@ -71,6 +71,15 @@ struct WallPiece {
   double gone_at = std::numeric_limits<double>::infinity();  ///< s, from when it does not stand any more
 };
 
+/// A round upright nozzle out of which material comes for a time, held to its motion.
+struct Feed {
+  double bore = 0.0, wall = 0.0;           ///< m: radius inside, and thickness
+  std::function<Point(double)> mouth;      ///< m: centre of its end at a time (s)
+  std::function<double(double)> extruded;  ///< m of the column in it that have come out until then
+  double column = 0.0;                     ///< m of it in all
+  double begins_at = 0.0, gone_at = 0.0;   ///< s: when it is there
+};
+
 /// Where material that comes so far ends a run, m.
 struct Domain {
   double radius = 0.0, height = 0.0;
@@ -106,12 +115,18 @@ struct OutletGauge {
 struct PlatesGauge {
   double height = 0.0;
 };
+/// Which section a strand has behind the nozzle that lays it: from `behind` the nozzle's axis on, over a
+/// length. m
+struct SectionGauge {
+  double behind = 0.0, length = 0.0;
+};
 /// What a run is judged by, one alternative for each MainGauge.
-using Gauged = std::variant<SpreadGauge, ChannelGauge, OutletGauge, PlatesGauge>;
+using Gauged = std::variant<SpreadGauge, ChannelGauge, OutletGauge, PlatesGauge, SectionGauge>;
 
 struct Pieces {
   std::vector<Body> bodies;
   std::vector<WallPiece> walls;
+  std::vector<Feed> feeds;              ///< one after the other
   std::vector<std::size_t> mirrored;    ///< axes with a plane of symmetry, or the axis of revolution, at 0
   std::optional<std::size_t> periodic;  ///< the axis along which everything repeats
   double whole_over_computed = 1.0;     ///< the whole body over the part that is computed
@@ -119,6 +134,7 @@ struct Pieces {
   bool runs_out = false;                ///< of a neck that it fills, in which it has no free surface either
   double drop = 0.0;                    ///< m that material can fall at most
   std::optional<double> whole_cells_over;  ///< m: a height that is a whole number of cells
+  std::optional<double> half_cells_over;   ///< m: a height that is a whole number of cells and a half
   /// m: the narrowest passage that walls leave; infinite where material is open to one side.
   double passage = std::numeric_limits<double>::infinity();
   std::optional<Domain> domain;
@@ -126,6 +142,9 @@ struct Pieces {
   ProfileAxis profile;
 };
 
+/// The edge of a cell (m) next to `wanted` of which a height (m) has a whole number and a half, at least one and
+/// a half.
+double cell_with_half(double height, double wanted);
 /// What of a scene a yield stress would have to hold.
 std::optional<Load> load_of(const Scene&);
 /// @throws std::invalid_argument where the scene's dimension is not one of its apparatus'.

@@ -14,6 +14,7 @@ double Gauges::edge_depth(MainGauge gauge) const {
     case MainGauge::discharge:
       return light_depth;
     case MainGauge::velocity:
+    case MainGauge::section:
       break;
   }
   return Gauges{}.spread_depth;

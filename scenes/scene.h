@@ -203,6 +203,7 @@ struct Scene {
   const Duct& duct() const { return std::get<Duct>(geometry.apparatus); }
   const LBox& l_box() const { return std::get<LBox>(geometry.apparatus); }
   const VFunnel& v_funnel() const { return std::get<VFunnel>(geometry.apparatus); }
+  const Printing& printing() const { return std::get<Printing>(geometry.apparatus); }
   const DamBreak& dam_break() const { return std::get<DamBreak>(geometry.apparatus); }
   MainGauge main_gauge() const;
   /// Height of the material at the start, m.

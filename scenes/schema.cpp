@@ -383,6 +383,7 @@ const std::vector<Section>& sections() {
       {"", "Above all sections"},
       {"runs", "What `flowrest run` makes of the scene"},
       {"geometry", "Shape and size"},
+      {"process", "How a strand is printed; only in scenes that print"},
       {"material", "The material and its model"},
       {"thixotropy", "Structural build-up and breakdown; only in scenes that have it"},
       {"walls", "Contact with walls"},

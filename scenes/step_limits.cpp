@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "scenes/pieces.h"
 
@@ -81,7 +82,12 @@ namespace {
 
 double occupied_cells(const Scene& scene) {
   double extent = 0.0;
-  for (const Body& body : pieces_of(scene).bodies) extent += body.extent;
+  const Pieces pieces = pieces_of(scene);
+  for (const Body& body : pieces.bodies) extent += body.extent;
+  for (const Feed& feed : pieces.feeds) {
+    const double column = std::min(feed.column, feed.extruded(std::min(feed.gone_at, scene.time.end)));
+    extent += std::numbers::pi * feed.bore * feed.bore * column / pieces.whole_over_computed;
+  }
   return extent / std::pow(scene.mpm.cell, scene.spatial_dimension());
 }
 

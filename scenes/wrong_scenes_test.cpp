@@ -31,6 +31,8 @@ cell = 0.01
 const std::string l_box_text = container_text("l-box");
 const std::string v_funnel_text = container_text("v-funnel");
 const std::string dam_text = container_text("dam-break");
+const std::string print_text =
+    container_text("printing") + "[process]\nprinting_velocity = 0.03\nextrusion_velocity = 0.0336\n";
 
 /// Text, what is replaced in it, and the message (or its beginning, where it is long).
 struct Wrong {
@@ -71,13 +73,13 @@ const Wrong wrong_scenes[] = {
      "particles_per_cell, cfl, time_step,"},
     {"KeyWithoutItsSection", slump_text, "kind = \"slump\"", "kind = \"slump\"\ndensity = 2300",
      "wrong.toml:3:1: unknown key \"density\", density belongs to [material]; allowed: title, kind, extends, "
-     "[runs], [geometry], [material], [thixotropy],"},
+     "[runs], [geometry], [process], [material], [thixotropy],"},
     {"UnknownSection", slump_text, "[foam]", "[faom]",
-     "wrong.toml:37:2: unknown section \"faom\", nearest is foam; allowed: runs, geometry, material, "
+     "wrong.toml:37:2: unknown section \"faom\", nearest is foam; allowed: runs, geometry, process, material, "
      "thixotropy, walls, forces, time, output, gauges, mpm, foam"},
     {"UnknownTopKey", slump_text, "title =", "titel =",
      "wrong.toml:1:1: unknown key \"titel\", nearest is title; allowed: title, kind, extends, [runs], "
-     "[geometry], [material], [thixotropy], [walls],"},
+     "[geometry], [process], [material], [thixotropy], [walls],"},
     {"KeyBelowAKey", slump_text, "cfl = 0.75", "grid.cell = 0.01",
      "wrong.toml:36:1: unknown key \"mpm.grid\"; allowed: scheme, cell, particles_per_cell, cfl, time_step, "
      "allow_unstable_step, precision, threads, seeding,"},
@@ -169,13 +171,26 @@ const Wrong wrong_scenes[] = {
     {"ColumnLongerThanItsTank", dam_text, "[time]", "[geometry]\ncolumn_length = 2.0\n[time]",
      "wrong.toml:10:17: the column of 2 m does not fit the tank of 1.61 m; allowed: at most the tank's "
      "length"},
+    {"PrintWithoutASpeed", print_text, "printing_velocity = 0.03\n", "\n",
+     "wrong.toml:14:2: process.printing_velocity is missing; needed: speed of the nozzle along the strand"},
+    {"PrintBackwards", print_text, "printing_velocity = 0.03", "printing_velocity = [[0, 0.03], [2, -0.01]]",
+     "wrong.toml:15:21: process.printing_velocity is -0.01 m/s from 2 s on; allowed: from 0"},
+    {"PrintOfNothing", print_text, "extrusion_velocity = 0.0336", "extrusion_velocity = 0",
+     "wrong.toml:16:22: process.extrusion_velocity is 0 at all times; allowed: greater than 0 at some"},
+    {"PrintWithCellsAsHighAsTheGap", print_text, "cell = 0.01", "cell = 0.012",
+     "wrong.toml:13:8: mpm.cell is 0.012 m, larger than the nozzle's gap"},
+    {"PrintInOpenFoam", print_text, "kind = \"printing\"",
+     "kind = \"printing\"\nruns = { foam = [\"newtonian\"] }",
+     "wrong.toml:3:17: runs.foam is given, but printing is not computed in OpenFOAM; allowed: none"},
+    {"PrintWithLinearFunctions", print_text, "cell = 0.01", "cell = 0.005\nscheme = \"linear-flip\"",
+     "wrong.toml:14:10: mpm.scheme is linear-flip, which holds no nozzle; allowed: quadratic-apic"},
     {"FrictionLeftOut", slump_text, "base = \"no-slip\"", "base = {}",
      "wrong.toml:20:8: walls.base is an empty table; allowed: { friction = a number }"},
     {"NoTitle", slump_text, "title = \"A slump\"\n", "\n",
      "wrong.toml:1:1: title is missing; needed: what every report calls the scene (string, 1 to 200 bytes)"},
     {"NoKind", slump_text, "kind = \"slump\"\n", "\n",
      "wrong.toml:1:1: kind is missing; needed: what is simulated (one of slump, duct, l-box, v-funnel, "
-     "dam-break)"},
+     "dam-break, printing)"},
     {"NoDensity", slump_text, "density = 2300.0\n", "\n",
      "wrong.toml:11:2: material.density is missing; needed: density at rest and without pressure (number, "
      "greater than 0, at most 1e+06, in kg/m3)"},

@@ -8,6 +8,7 @@
 #include "compare/apparatus/dam_break.h"
 #include "compare/apparatus/duct.h"
 #include "compare/apparatus/l_box.h"
+#include "compare/apparatus/printing.h"
 #include "compare/apparatus/slump.h"
 #include "compare/apparatus/v_funnel.h"
 #include "compare/exact/solution_run.h"

@@ -90,6 +90,10 @@ Reading reading_named(const std::string& quantity) {
       {"light_s", "light is seen through the funnel", "s"},
       {"rest_s", "rest", "s"},
       {"discharged_fraction", "discharged fraction at the end", ""},
+      {"strand_width_mm", "width of the strand", "mm"},
+      {"strand_height_mm", "height of the strand", "mm"},
+      {"section_area_mm2", "area of its section", "mm2"},
+      {"area_over_balance", "area over balance", ""},
       {"plug_velocity_m_s", "plug velocity at the end", "m/s"},
       {"flocculation_mean", "mean flocculation state λ at the end", ""}};
   for (const Reading& reading : known)

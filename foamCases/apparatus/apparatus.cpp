@@ -8,6 +8,7 @@
 #include "foamCases/apparatus/dam_break.h"
 #include "foamCases/apparatus/duct.h"
 #include "foamCases/apparatus/l_box.h"
+#include "foamCases/apparatus/printing.h"
 #include "foamCases/apparatus/slump.h"
 #include "foamCases/apparatus/v_funnel.h"
 

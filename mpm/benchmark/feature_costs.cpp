@@ -40,7 +40,7 @@ Paired gauge_cost(FlowingSlump slump) {
   for (int turn = 0; turn < turns; ++turn) {
     step.push_back(time_of(slump));
     const double begin = cpu_seconds();
-    gauges.measure(slump.solver());
+    gauges.measure(slump.solver(), 0.0);
     const double once = (cpu_seconds() - begin) / slump.particles() * 1e9;
     ratio.push_back(1.0 + once * slump.step() / 0.05 / step.back());
   }

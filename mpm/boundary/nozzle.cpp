@@ -36,8 +36,14 @@ bool NozzleMotion::misses(const Vector& lower, const Vector& upper) const {
 template <class T>
 double NozzleNodes<T>::hold(const SparseBlocks& blocks, double time, double step, T* nodes) {
   impulse_ = {};
-  if (time >= nozzle_.gone_at) return 0.0;
-  const NozzleMotion motion(nozzle_, time, step, cell_);
+  double work = 0.0;
+  for (const Nozzle& nozzle : nozzles_)
+    if (nozzle.is_there(time)) work += hold(NozzleMotion(nozzle, time, step, cell_), blocks, nodes);
+  return work;
+}
+
+template <class T>
+double NozzleNodes<T>::hold(const NozzleMotion& motion, const SparseBlocks& blocks, T* nodes) {
   double work = 0.0;
   for (std::uint32_t slot = 0; slot < blocks.slot_count(); ++slot) {
     const auto& block = blocks.block(slot);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "mpm/boundary/walls.h"
 #include "mpm/solver/sparse_blocks.h"
@@ -18,7 +19,10 @@ struct Nozzle {
   std::function<Vector(double)> mouth;     ///< m: centre of its end at a time (s)
   std::function<double(double)> extruded;  ///< m of the column that have come out of it until then
   double column = std::numeric_limits<double>::infinity();   ///< m that come out of it in all
+  double begins_at = 0.0;                                    ///< s, from when it is there
   double gone_at = std::numeric_limits<double>::infinity();  ///< s, from when it holds nothing any more
+
+  bool is_there(double time) const { return time >= begins_at && time < gone_at; }
 };
 
 /// How a nozzle moves in one step, and what it holds.
@@ -43,12 +47,12 @@ class NozzleMotion {
   Vector mouth_, tube_, column_;
 };
 
-/// Holds the grid's nodes to a nozzle: of quadratic functions, in three dimensions.
+/// Holds the grid's nodes to nozzles: of quadratic functions, in three dimensions.
 template <class T>
 class NozzleNodes {
  public:
   /// `cell`: m.
-  NozzleNodes(Nozzle nozzle, double cell) : nozzle_(std::move(nozzle)), cell_(cell) {}
+  NozzleNodes(std::vector<Nozzle> nozzles, double cell) : nozzles_(std::move(nozzles)), cell_(cell) {}
 
   /// Holds the new velocities of a step from `time` over `step` s. `nodes` are records as update_nodes leaves
   /// them. Returns the work on the material, J.
@@ -58,7 +62,9 @@ class NozzleNodes {
   const Vector& impulse() const { return impulse_; }
 
  private:
-  Nozzle nozzle_;
+  double hold(const NozzleMotion&, const SparseBlocks&, T* nodes);
+
+  std::vector<Nozzle> nozzles_;
   double cell_;
   Vector impulse_{};
 };

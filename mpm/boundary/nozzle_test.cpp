@@ -53,9 +53,9 @@ struct Print {
     nozzle.wall = 0.003;
     nozzle.mouth = [v = printing](double time) -> Vector { return {0.02 + v * time, 0.0, 0.0125}; };
     nozzle.extruded = [u = extrusion](double time) { return u * time; };
-    settings.nozzle = nozzle;
+    settings.nozzles = {nozzle};
   }
-  Feed feed() const { return {*settings.nozzle, settings.cell, 2, true, 0.0}; }
+  Feed feed() const { return {settings.nozzles.front(), settings.cell, 2, true, 0.0}; }
 };
 
 }  // namespace
@@ -138,8 +138,8 @@ TEST(Nozzle, MovesTheColumnAsOneBody) {
 /// What holds the column carries its weight, and drags the strand along.
 TEST(Nozzle, CarriesWhatHangsInIt) {
   Print print;
-  print.settings.nozzle->extruded = [](double) { return 0.0; };
-  print.settings.nozzle->mouth = [](double) -> Vector { return {0.02, 0.0, 0.1}; };
+  print.settings.nozzles.front().extruded = [](double) { return 0.0; };
+  print.settings.nozzles.front().mouth = [](double) -> Vector { return {0.02, 0.0, 0.1}; };
   Feed feed = print.feed();
   auto solver = make_solver(print.settings, feed.due(0.0, 1e-3));
   const double weight = 9.81 * mass_of(*solver), step = usual_step(print.settings);
@@ -150,7 +150,7 @@ TEST(Nozzle, CarriesWhatHangsInIt) {
     if (i >= 200) mean += solver->nozzle_force()[2] / 200.0;
   }
   EXPECT_NEAR(mean, weight, 0.03 * weight);
-  print.settings.nozzle->gone_at = 0.0;
+  print.settings.nozzles.front().gone_at = 0.0;
   auto free = make_solver(print.settings, print.feed().due(0.0, 1e-3));
   free->set_time(0.0);
   free->step(step, falling);

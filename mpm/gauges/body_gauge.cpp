@@ -12,6 +12,7 @@ struct Make {
   std::unique_ptr<BodyGauge> operator()(const scenes::ChannelGauge& g) const { return channel_gauge(of, g); }
   std::unique_ptr<BodyGauge> operator()(const scenes::OutletGauge& g) const { return outlet_gauge(of, g); }
   std::unique_ptr<BodyGauge> operator()(const scenes::PlatesGauge& g) const { return plates_gauge(of, g); }
+  std::unique_ptr<BodyGauge> operator()(const scenes::SectionGauge& g) const { return section_gauge(of, g); }
 };
 
 }  // namespace

@@ -37,12 +37,14 @@ struct GaugeCase {
   const scenes::Pieces& pieces;
   double cell;           ///< m
   std::size_t vertical;  ///< axis of the computation
+  double time;           ///< s
 };
 
 std::unique_ptr<BodyGauge> spread_gauge(const GaugeCase&, const scenes::SpreadGauge&);
 std::unique_ptr<BodyGauge> channel_gauge(const GaugeCase&, const scenes::ChannelGauge&);
 std::unique_ptr<BodyGauge> outlet_gauge(const GaugeCase&, const scenes::OutletGauge&);
 std::unique_ptr<BodyGauge> plates_gauge(const GaugeCase&, const scenes::PlatesGauge&);
+std::unique_ptr<BodyGauge> section_gauge(const GaugeCase&, const scenes::SectionGauge&);
 
 /// The gauge of what pieces are gauged by.
 std::unique_ptr<BodyGauge> body_gauge(const GaugeCase&);

@@ -91,10 +91,10 @@ Gauges::Gauges(const scenes::Scene& scene, const scenes::Pieces& pieces)
       held_walls_(pieces, scene.spatial_dimension()),
       cell_(cell_size(scene)) {}
 
-Measures Gauges::measure(Solver& solver) const {
+Measures Gauges::measure(Solver& solver, double time) const {
   const auto vertical = static_cast<std::size_t>(vertical_axis(scene_));
   Layer layer(scene_, held_walls_, cell_);
-  const auto gauge = body_gauge({scene_, pieces_, cell_, vertical});
+  const auto gauge = body_gauge({scene_, pieces_, cell_, vertical, time});
   gauge->begin(solver);
   Sums sums(scene_, pieces_.whole_over_computed, rest_, solver.particle_count());
   solver.visit([&](const ParticleBatch& b) {

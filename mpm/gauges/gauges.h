@@ -36,7 +36,8 @@ struct Measures {
 class Gauges {
  public:
   Gauges(const scenes::Scene&, const scenes::Pieces&);
-  Measures measure(Solver&) const;
+  /// Of the particles at a time, s.
+  Measures measure(Solver&, double time) const;
   /// `layer`: what the row says of the sheared layer.
   runs::Row row(double time, double step, const Measures&, const runs::Row& layer) const;
 

@@ -16,6 +16,7 @@
 #include "mpm/output/noise.h"
 #include "mpm/output/snapshot.h"
 #include "mpm/plain/solver.h"
+#include "mpm/sampling/feed.h"
 #include "mpm/sampling/sampling.h"
 #include "mpm/solver/kernels.h"
 #include "mpm/solver/settings.h"
@@ -37,6 +38,8 @@ namespace {
 
 /// More energy made by the discretisation than this share of the energy scale is an instability.
 constexpr double energy_made_allowed = 0.05;
+/// Over which a feed's first discs take their speed, s.
+constexpr double first_feed_step = 1e-4;
 /// Time over which APIC's transfer acts once in scenes with walls of any shape, s. A duct between such walls,
 /// five cells wide, carries 0.66 of what it should with plain APIC, 0.88 with this and 0.90 with 0.05.
 constexpr double relaxation_time_beside_walls = 0.02;
@@ -68,12 +71,16 @@ class MpmRun {
         pieces_(scenes::pieces_of(scene)),
         options_(options),
         settings_(with_instruction_set(settings_of(scene), options.instruction_set)),
+        feeds_(settings_, scene.mpm.particles_per_cell.back(), pieces_.whole_over_computed > 1.0,
+               scene.thixotropy ? scene.thixotropy->initial_flocculation : 0.0),
         gauges_(scene_, pieces_),
         rest_(scene_),
         noise_(settings_.dimension, settings_.cell),
         factor_(pieces_.whole_over_computed),
         // Before anything is written: seeding may need a program that is missing.
-        solver_(checkpoint ? make(checkpoint->solver) : make(seeds_of(scene))),
+        solver_(checkpoint     ? make(checkpoint->solver)
+                : feeds_.any() ? make(feeds_.due(0.0, first_feed_step))
+                               : make(seeds_of(scene))),
         writer_(open()),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.last_snapshot : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
@@ -106,6 +113,7 @@ class MpmRun {
 
   void take_up(const Checkpoint& checkpoint) {
     state_ = checkpoint.run;
+    feeds_.skip_to(state_.time);
     noise_.restore(checkpoint.noise_meter);
     if (const auto history = options_.directory / "history.csv"; std::filesystem::exists(history))
       resolution_.continue_from(runs::read_csv(history));
@@ -209,12 +217,26 @@ class MpmRun {
       state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(end_, next_row());
     state_.time = step >= target - state_.time ? target : state_.time + step;
+    feed(step);
     if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
     if (result.largest_speed > fastest_)
       throw runs::NumericsError(fmt::format(
           "a particle moves at {:.3g} m/s, faster than sound ({:.3g} m/s) and than any fall in this scene: "
           "the step or the material is unstable",
           result.largest_speed, scene_.material.longitudinal_speed()));
+  }
+
+  /// Lets in what is due. What it brings counts as work.
+  void feed(double step) {
+    const std::vector<Seed> come = feeds_.due(state_.time, step);
+    if (come.empty()) return;
+    for (const Seed& seed : come) {
+      const auto& v = seed.velocity;
+      const double height = (seed.cell[2] + seed.position[2]) * settings_.cell;
+      state_.work += factor_ * seed.volume * settings_.density *
+                     (0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + scene_.forces.gravity * height);
+    }
+    solver_->exchange([](const Vector&) { return false; }, [](const ParticleBatch&) {}, come);
   }
 
   double total_energy() const {
@@ -228,7 +250,7 @@ class MpmRun {
   }
 
   void measure() {
-    measures_ = gauges_.measure(*solver_);
+    measures_ = gauges_.measure(*solver_, state_.time);
     Energies& e = measures_.energies;
     e.dissipated = state_.dissipated;
     if (state_.steps > 0.0) e.numerical = state_.initial_energy + state_.work - total_energy() - e.dissipated;
@@ -446,6 +468,7 @@ class MpmRun {
   scenes::Pieces pieces_;
   RunOptions options_;
   SolverSettings settings_;
+  Feeds feeds_;
   Gauges gauges_;
   runs::Rest rest_;
   NoiseMeter noise_;

@@ -287,7 +287,7 @@ TEST(Plain, PrintsAsTheKernelsDo) {
   nozzle.wall = 0.004;
   nozzle.mouth = [](double time) -> Vector { return {0.02 + 0.3 * time, 0.0, 0.0125}; };
   nozzle.extruded = [](double time) { return 0.34 * time; };
-  s.nozzle = nozzle;
+  s.nozzles = {nozzle};
   Feed feed(nozzle, s.cell, 2, true, 0.3);
   // Each particle's volume tells it apart.
   std::size_t number = 0;

@@ -30,7 +30,7 @@ Numerics numerics_of(const SolverSettings& s) {
   return {.axisymmetric = s.axisymmetric,
           .cell = s.cell,
           .bounds = s.bounds,
-          .nozzle = s.nozzle,
+          .nozzles = s.nozzles,
           .dilatation = s.b_bar(),
           .explicit_fluid = s.explicit_fluid,
           .free_surface = s.free_surface,

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <optional>
 
 #include "laws/equation_of_state.h"
 #include "laws/law.h"
@@ -36,7 +35,7 @@ struct Numerics {
   bool axisymmetric = false;
   double cell = 0.0;  ///< m
   std::array<AxisBounds, 3> bounds{};
-  std::optional<Nozzle> nozzle;                ///< in three dimensions
+  std::vector<Nozzle> nozzles;                 ///< in three dimensions
   Dilatation dilatation = Dilatation::smooth;  ///< or the cell average
   bool explicit_fluid = false;  ///< a fluid's stress is that of its rate, else found implicitly
   bool free_surface = true;     ///< where there is none, as in a duct, every cell is full and stays so
@@ -64,7 +63,7 @@ struct Outcome {
   double largest_speed = 0.0;     ///< m/s
   double largest_pressure = 0.0;  ///< Pa
   T dissipated{};                 ///< J
-  T wall_work{};                  ///< J, of walls of any shape and a nozzle
+  T wall_work{};                  ///< J, of walls of any shape and nozzles
   T momentum{};                   ///< kg m/s along the first axis, of the velocities that moved the particles
   std::uint32_t faults = 0;       ///< particles that moved further than a cell, or are no longer finite
 };
@@ -93,7 +92,7 @@ class Body {
     Outcome<T> outcome;
     particles_to_grid(dt);
     forces_to_velocities(dt, acceleration);
-    if (numerics_.nozzle) outcome.wall_work = hold_to_nozzle(time, dt);
+    outcome.wall_work = hold_to_nozzles(time, dt);
     if (walls_) outcome.wall_work += hold_to_walls(time, dt, acceleration);
     hold_to_planes(keep);
     grid_to_particles(dt, keep);
@@ -198,12 +197,18 @@ class Body {
           node.velocity[i] = (node.momentum[i] + node.impulse[i]) / node.mass;
   }
 
-  /// A nozzle moves what is in it (boundary/nozzle.h). Returns its work on the material, J.
-  T hold_to_nozzle(double time, const T& dt) {
+  /// Nozzles move what is in them (boundary/nozzle.h). Returns their work on the material, J.
+  T hold_to_nozzles(double time, const T& dt) {
     T work(0);
     nozzle_impulse_ = {};
-    if (time >= numerics_.nozzle->gone_at) return work;
-    const NozzleMotion motion(*numerics_.nozzle, time, value(dt), numerics_.cell);
+    for (const Nozzle& nozzle : numerics_.nozzles)
+      if (nozzle.is_there(time))
+        work += hold_to_nozzle(NozzleMotion(nozzle, time, value(dt), numerics_.cell));
+    return work;
+  }
+
+  T hold_to_nozzle(const NozzleMotion& motion) {
+    T work(0);
     for (std::size_t n = 0; n < grid_.size(); ++n) {
       Node<T, Dim>& node = grid_.node(n);
       if (!carries(node)) continue;

@@ -26,15 +26,25 @@ Feed::Feed(const Nozzle& nozzle, double cell, int per_axis, bool half, double fl
     }
 }
 
+bool Feed::is_due(double time) const {
+  return time >= nozzle_.begins_at && begin_of(discs_) < nozzle_.column &&
+         begin_of(discs_) < nozzle_.extruded(time) + filled_cells * cell_;
+}
+
+void Feed::skip_to(double time) {
+  while (is_due(time)) ++discs_;
+}
+
 std::vector<Seed> Feed::due(double time, double step) {
   std::vector<Seed> seeds;
+  if (!is_due(time)) return seeds;
   const Vector mouth = nozzle_.mouth(time), before = nozzle_.mouth(time - step);
   const double extruded = nozzle_.extruded(time);
   Seed seed;
   for (std::size_t a = 0; a < 3; ++a) seed.velocity[a] = (mouth[a] - before[a]) / step;
   seed.velocity[2] -= (extruded - nozzle_.extruded(time - step)) / step;
   seed.flocculation = flocculation_;
-  while (begin_of(discs_) < nozzle_.column && begin_of(discs_) < extruded + filled_cells * cell_) {
+  while (is_due(time)) {
     const double begin = begin_of(discs_), end = end_of(discs_);
     seed.volume = area_ * (end - begin) / static_cast<double>(sites_.size());
     for (const Site& site : sites_) {
@@ -52,5 +62,29 @@ std::vector<Seed> Feed::due(double time, double step) {
 }
 
 double Feed::volume() const { return discs_ == 0 ? 0.0 : area_ * end_of(discs_ - 1); }
+
+Feeds::Feeds(const SolverSettings& settings, int per_axis, bool half, double flocculation) {
+  for (const Nozzle& nozzle : settings.nozzles)
+    feeds_.emplace_back(nozzle, settings.cell, per_axis, half, flocculation);
+}
+
+std::vector<Seed> Feeds::due(double time, double step) {
+  std::vector<Seed> all;
+  for (Feed& feed : feeds_) {
+    const std::vector<Seed> seeds = feed.due(time, step);
+    all.insert(all.end(), seeds.begin(), seeds.end());
+  }
+  return all;
+}
+
+void Feeds::skip_to(double time) {
+  for (Feed& feed : feeds_) feed.skip_to(time);
+}
+
+double Feeds::volume() const {
+  double sum = 0.0;
+  for (const Feed& feed : feeds_) sum += feed.volume();
+  return sum;
+}
 
 }  // namespace flowrest::mpm

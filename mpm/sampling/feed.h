@@ -20,9 +20,9 @@ class Feed {
 
   /// The discs that are due at `time`, moving as the column has on average over the `step` s before.
   std::vector<Seed> due(double time, double step);
-  /// How many have come: what a run that is gone on with begins from.
+  /// Takes those that are due at `time` for come, as where a run is gone on with.
+  void skip_to(double time);
   std::size_t discs() const { return discs_; }
-  void set_discs(std::size_t discs) { discs_ = discs; }
   /// m3 of the computed part, of them all.
   double volume() const;
 
@@ -30,6 +30,7 @@ class Feed {
   struct Site {
     double x, y;  ///< m from the axis
   };
+  bool is_due(double time) const;
   double begin_of(std::size_t disc) const { return thickness_ * static_cast<double>(disc); }
   double end_of(std::size_t disc) const { return std::min(begin_of(disc + 1), nozzle_.column); }
 
@@ -38,6 +39,20 @@ class Feed {
   double flocculation_;
   std::vector<Site> sites_;
   std::size_t discs_ = 0;
+};
+
+/// The feeds of a scene, one after the other.
+class Feeds {
+ public:
+  Feeds(const SolverSettings&, int per_axis, bool half, double flocculation);
+  bool any() const { return !feeds_.empty(); }
+  /// As those of Feed.
+  std::vector<Seed> due(double time, double step);
+  void skip_to(double time);
+  double volume() const;
+
+ private:
+  std::vector<Feed> feeds_;
 };
 
 }  // namespace flowrest::mpm

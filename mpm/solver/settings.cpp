@@ -21,11 +21,25 @@ double density_correction(const scenes::Scene& scene, const scenes::Pieces& piec
   return mpm.density_correction.value_or(left_alone ? 0.0 : usual);
 }
 
+Nozzle nozzle_of(const scenes::Feed& feed) {
+  return {.bore = feed.bore,
+          .wall = feed.wall,
+          .mouth = feed.mouth,
+          .extruded = feed.extruded,
+          .column = feed.column,
+          .begins_at = feed.begins_at,
+          .gone_at = feed.gone_at};
+}
+
 }  // namespace
 
 double cell_size(const scenes::Scene& scene) {
-  const auto height = scenes::pieces_of(scene).whole_cells_over;
-  return height ? *height / std::max(1.0, std::round(*height / scene.mpm.cell)) : scene.mpm.cell;
+  const scenes::Pieces pieces = scenes::pieces_of(scene);
+  const double wanted = scene.mpm.cell;
+  if (const auto height = pieces.whole_cells_over)
+    return *height / std::max(1.0, std::round(*height / wanted));
+  if (const auto height = pieces.half_cells_over) return scenes::cell_with_half(*height, wanted);
+  return wanted;
 }
 
 double whole_body_factor(const scenes::Scene& scene) { return scenes::pieces_of(scene).whole_over_computed; }
@@ -72,6 +86,7 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   const SceneWalls walls = walls_of(pieces, s.dimension, s.cell);
   s.bounds = walls.bounds;
   s.walls = walls.walls;
+  for (const scenes::Feed& feed : pieces.feeds) s.nozzles.push_back(nozzle_of(feed));
   s.threads = scene.mpm.threads;
   return s;
 }

@@ -118,7 +118,7 @@ class SolverOf final : public Solver {
   void set_apic_relaxation_time(double time) override { apic_relaxation_time_ = time; }
   void set_time(double time) override { time_ = time; }
   Vector nozzle_force() const override {
-    Vector force = nozzle_ ? nozzle_->impulse() : Vector{};
+    Vector force = nozzles_ ? nozzles_->impulse() : Vector{};
     for (double& f : force) f /= static_cast<double>(parameters_.step);
     return force;
   }
@@ -216,7 +216,8 @@ class SolverOf final : public Solver {
     const double full =
         settings.density * std::pow(settings.cell, settings.axisymmetric ? 3 : settings.dimension);
     p.smallest_mass = static_cast<T>(full * 1e-25);
-    if (settings.nozzle) nozzle_ = std::make_unique<NozzleNodes<T>>(*settings.nozzle, settings.cell);
+    if (!settings.nozzles.empty())
+      nozzles_ = std::make_unique<NozzleNodes<T>>(settings.nozzles, settings.cell);
     make_walls();
     if (settings.walls.empty()) return;
     p.walls = this;
@@ -444,8 +445,8 @@ class SolverOf final : public Solver {
   /// Holds the nodes to every wall that the arenas do not hold themselves. Planes of friction are asked again
   /// after walls of any shape, which lean on what the planes hold.
   void hold_walls(const Grid<T>& grid) {
-    if (nozzle_)
-      wall_work_ += nozzle_->hold(blocks_, time_, static_cast<double>(parameters_.step), grid.nodes);
+    if (nozzles_)
+      wall_work_ += nozzles_->hold(blocks_, time_, static_cast<double>(parameters_.step), grid.nodes);
     if (plane_friction_) plane_friction_->hold(grid.nodes);
     if (contact_) wall_work_ += contact_->apply(grid.nodes, static_cast<double>(parameters_.step), drive_);
     if (plane_friction_ && contact_) plane_friction_->hold_again(grid.nodes);
@@ -583,7 +584,7 @@ class SolverOf final : public Solver {
   Kernels<T> kernels_;
   StepParameters<T> parameters_;
   double apic_relaxation_time_ = 0.0;
-  std::unique_ptr<NozzleNodes<T>> nozzle_;     ///< null where the settings have none
+  std::unique_ptr<NozzleNodes<T>> nozzles_;    ///< null where the settings have none
   std::unique_ptr<WallContact<T>> contact_;    ///< null where no wall but planes along the grid is given
   std::unique_ptr<NearbyWalls> nearby_walls_;  ///< likewise
   std::unique_ptr<PlaneFriction<T>> plane_friction_;  ///< null where no plane along the grid has friction

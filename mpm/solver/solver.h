@@ -39,10 +39,10 @@ struct SolverSettings {
   laws::Structure<double> structure;  ///< of what is thixotropic
   laws::EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
-  std::vector<Wall> walls;       ///< of any shape, beside the planes of `bounds`
-  std::optional<Nozzle> nozzle;  ///< in three dimensions, with quadratic functions
-  int threads = 0;               ///< 0: as many as the particles can feed, of the cores that are ours
-  std::string instruction_set;   ///< empty: the best this machine runs
+  std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
+  std::vector<Nozzle> nozzles;  ///< in three dimensions, with quadratic functions
+  int threads = 0;              ///< 0: as many as the particles can feed, of the cores that are ours
+  std::string instruction_set;  ///< empty: the best this machine runs
 
   Dilatation b_bar() const {
     return dilatation.value_or(transfer == Transfer::quadratic_apic ? Dilatation::smooth
@@ -133,7 +133,7 @@ class Solver {
   virtual void set_time(double) = 0;
   /// Force of a wall of the settings on the material in the last step, N.
   virtual Vector wall_force(std::size_t wall) const = 0;
-  /// Force of the nozzle on the material in the last step, N.
+  /// Force of the nozzles on the material in the last step, N.
   virtual Vector nozzle_force() const = 0;
   /// Between two steps: takes out the particles for whose place (m) `leaves` is true, after `use` has seen them,
   /// and puts others in. The rest keep all that they have, and their order in each cell.

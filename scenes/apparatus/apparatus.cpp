@@ -1,5 +1,8 @@
 #include "scenes/apparatus/apparatus.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "scenes/pieces.h"
 
 namespace flowrest::scenes {
@@ -31,6 +34,10 @@ const Apparatus* apparatus_named(const std::string& name) {
 
 std::optional<Load> load_of(const Scene& scene) {
   return std::visit([&](const auto& a) { return a.load(scene); }, scene.geometry.apparatus);
+}
+
+double cell_with_half(double height, double wanted) {
+  return height / (std::max(1.0, std::round(height / wanted - 0.5)) + 0.5);
 }
 
 Pieces pieces_of(const Scene& scene) {

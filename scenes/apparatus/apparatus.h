@@ -9,6 +9,7 @@
 #include "scenes/apparatus/dam_break.h"
 #include "scenes/apparatus/duct.h"
 #include "scenes/apparatus/l_box.h"
+#include "scenes/apparatus/printing.h"
 #include "scenes/apparatus/slump.h"
 #include "scenes/apparatus/v_funnel.h"
 
@@ -22,7 +23,7 @@
 /// a yield stress would have to hold; and `pieces`, what it is made of.
 namespace flowrest::scenes {
 
-using Apparatus = std::variant<Slump, Duct, LBox, VFunnel, DamBreak>;
+using Apparatus = std::variant<Slump, Duct, LBox, VFunnel, DamBreak, Printing>;
 
 /// The name of an apparatus, such as "slump".
 std::string name_of(const Apparatus&);

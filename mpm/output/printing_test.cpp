@@ -1,0 +1,85 @@
+// Printed strands: what comes out of the nozzle is there, and where it should be.
+#include <cmath>
+#include <numbers>
+
+#include "mpm/output/checkpoint.h"
+#include "mpm/output/test_runs.h"
+
+using namespace flowrest;
+using namespace flowrest::mpm;
+using namespace flowrest::mpm::test;
+
+namespace {
+
+constexpr double bore_area = std::numbers::pi * 0.0125 * 0.0125;  // m2
+constexpr double printing = 0.03, extrusion = 0.0336;             // m/s
+
+/// Case 1 on cells of 5 mm, 30 mm of strand and a moment to stand.
+scenes::Scene short_strand(const std::vector<std::string>& more = {}) {
+  return scenes::load_scene(
+      "printing-1",
+      {with({"mpm.cell=0.005", "mpm.precision=double", "mpm.threads=1", "geometry.layer_length=0.03",
+             "time.end=1.1", "output.history_interval=0.1", "output.checkpoint_interval=0.3"},
+            more),
+       {}});
+}
+
+class Print : public RunTest {};
+
+}  // namespace
+
+TEST_F(Print, AllThatIsExtrudedIsThereAndNoMore) {
+  const auto run = run_and_read(short_strand());
+  const double fed = bore_area * extrusion * 0.03 / printing;
+  EXPECT_NEAR(run.history.at("volume_at_rest_m3").back(), fed, 1e-9 * fed);
+  EXPECT_EQ(run.info["verdict"].get<std::string>().find("noisy"), std::string::npos) << run.info["verdict"];
+  for (const double made : run.history.at("numerical_energy_J"))
+    EXPECT_GT(made, -0.02 * run.history.at("dissipated_energy_J").back());
+}
+
+TEST_F(Print, HalfAStrandIsHalfOfTheWhole) {
+  const auto half = run_and_read(short_strand({"time.end=0.5"}), "half");
+  const auto whole = run_and_read(short_strand({"time.end=0.5", "geometry.dimension=full"}), "whole");
+  for (const char* column : {"volume_m3", "volume_at_rest_m3", "kinetic_energy_J", "potential_energy_J",
+                             "dissipated_energy_J", "nozzle_drag_N", "nozzle_push_N"}) {
+    const double a = half.history.at(column).back(), b = whole.history.at(column).back();
+    EXPECT_NEAR(a, b, 1e-6 * std::abs(b)) << column;
+  }
+}
+
+TEST_F(Print, GoesOnBitForBitAndWithAnyNumberOfThreads) {
+  const auto scene = short_strand({"time.end=0.6"});
+  run(scene, options("whole"));
+  auto stopped = options("stopped");
+  stopped.interrupted = [asked = 0]() mutable { return asked++ == 777; };
+  EXPECT_EQ(run(scene, stopped).status, runs::Status::interrupted);
+  EXPECT_EQ(resume(options("stopped"), {"mpm.threads=2"}).status, runs::Status::end_time);
+  EXPECT_EQ(text_of(folder / "whole/history.csv"), text_of(folder / "stopped/history.csv"));
+  const auto a = read_checkpoint(folder / "whole"), b = read_checkpoint(folder / "stopped");
+  ASSERT_TRUE(a && b);
+  ASSERT_EQ(a->solver.cells, b->solver.cells);
+  for (int k = 0; k < a->solver.array_count; ++k) ASSERT_EQ(a->solver.array(k), b->solver.array(k));
+}
+
+/// Coarse and short, so not yet quite what is fed; the section has the shape of two independent prototypes on
+/// finer cells: 48 mm wide and 12.6 mm high.
+TEST_F(Print, AStrandHasTheSectionThatIsFed) {
+  const auto run = run_and_read(
+      short_strand({"geometry.layer_length=0.13", "time.end=4.4", "mpm.precision=float", "mpm.threads=0"}));
+  EXPECT_NEAR(run.history.at("area_over_balance").back(), 1.0, 0.06);
+  EXPECT_NEAR(run.history.at("strand_width_mm").back(), 48.0, 4.0);
+  EXPECT_NEAR(run.history.at("strand_height_mm").back(), 12.6, 1.0);
+  EXPECT_LT(run.history.at("base_width_mm").back(), run.history.at("strand_width_mm").back() + 0.1);
+  EXPECT_TRUE(std::isnan(run.history.at("strand_width_mm").front()));
+  EXPECT_EQ(run.history.at("nozzle_push_N").back(), 0.0) << "it has gone";
+}
+
+TEST_F(Print, ASecondLayerLiesOnTheFirst) {
+  const auto run = run_and_read(
+      short_strand({"geometry.layers=2", "geometry.layer_length=0.075", "geometry.direction=alternating",
+                    "process.pause=0.1", "time.end=5.3", "mpm.precision=float", "mpm.threads=0"}));
+  const double fed = 2.0 * bore_area * extrusion * 0.075 / printing;
+  EXPECT_NEAR(run.history.at("volume_at_rest_m3").back(), fed, 1e-5 * fed);
+  EXPECT_NEAR(run.history.at("strand_height_mm").back(), 25.0, 2.5);
+  EXPECT_NEAR(run.history.at("area_over_balance").back(), 1.0, 0.2);
+}
