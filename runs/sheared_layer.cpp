@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runs/bins.h"
+
 namespace flowrest::runs {
 
 namespace {
@@ -20,14 +22,13 @@ void LayerMeter::add(const ShearSample& s) {
   if (width_ == 0.0) width_ = s.extent / bins_per_extent;
   const double low = std::max(0.0, s.distance - 0.5 * s.extent) / width_,
                high = std::max(0.5 * s.extent, s.distance + 0.5 * s.extent) / width_;
-  const auto first = static_cast<std::size_t>(low), last = static_cast<std::size_t>(high);
-  if (last >= bins_.size()) bins_.resize(last + 1);
-  for (std::size_t i = first; i <= last; ++i) {
-    const auto from = static_cast<double>(i);
-    const double part = weight * (std::min(high, from + 1.0) - std::max(low, from)) / (high - low);
-    bins_[i].weight += part;
-    bins_[i].cells_per_metre += part / s.cell;
-  }
+  if (const auto last = static_cast<std::size_t>(high); last >= bins_.size()) bins_.resize(last + 1);
+  for_each_bin(low, high, [&](long i, double overlap) {
+    const double part = weight * overlap / (high - low);
+    Bin& bin = bins_[static_cast<std::size_t>(i)];
+    bin.weight += part;
+    bin.cells_per_metre += part / s.cell;
+  });
 }
 
 /// A bin that holds nothing has the cells of the one before.

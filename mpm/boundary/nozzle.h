@@ -37,6 +37,8 @@ class NozzleMotion {
   /// From `time` over `step` s; `cell`: m.
   NozzleMotion(const Nozzle&, double time, double step, double cell);
 
+  /// Of what comes down the bore, m/s.
+  const Vector& column() const { return column_; }
   /// The velocity of a node at a place (m), where it is held.
   std::optional<Vector> at(const Vector& node) const;
   /// Whether a box (m) of nodes holds none that is.

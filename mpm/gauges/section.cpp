@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mpm/gauges/body_gauge.h"
+#include "runs/bins.h"
 #include "runs/depth.h"
 
 namespace flowrest::mpm {
@@ -20,11 +21,8 @@ class Bins {
 
   void add(double place, double extent, double volume) {
     const double from = (place - 0.5 * extent) / width_, to = (place + 0.5 * extent) / width_;
-    for (auto bin = static_cast<long>(std::floor(from)); static_cast<double>(bin) < to; ++bin) {
-      const double share =
-          std::min(to, static_cast<double>(bin + 1)) - std::max(from, static_cast<double>(bin));
-      volume_[bin] += volume * share / (to - from);
-    }
+    runs::for_each_bin(from, to,
+                       [&](long bin, double overlap) { volume_[bin] += volume * overlap / (to - from); });
   }
   const std::map<long, double>& volumes() const { return volume_; }
   double at(long bin) const {

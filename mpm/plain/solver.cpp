@@ -175,11 +175,11 @@ class PlainSolver final : public Solver {
   void exchange(const std::function<bool(const mpm::Vector&)>& leaves,
                 const std::function<void(const ParticleBatch&)>& use,
                 const std::vector<Seed>& come) override {
-    const ParticleBatch all = everything();
+    const ParticleBatch all = leaves ? everything() : ParticleBatch{};
     ParticleBatch leaving;
     std::vector<Particle<T, Dim>> particles;
-    for (std::size_t q = 0; q < all.count; ++q) {
-      if (leaves({all.position[0][q], all.position[1][q], all.position[2][q]})) {
+    for (std::size_t q = 0; q < body_.particles().size(); ++q) {
+      if (leaves && leaves({all.position[0][q], all.position[1][q], all.position[2][q]})) {
         leaving.add(all, q);
       } else {
         particles.push_back(body_.particles()[q]);

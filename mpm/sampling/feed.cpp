@@ -38,11 +38,10 @@ void Feed::skip_to(double time) {
 std::vector<Seed> Feed::due(double time, double step) {
   std::vector<Seed> seeds;
   if (!is_due(time)) return seeds;
-  const Vector mouth = nozzle_.mouth(time), before = nozzle_.mouth(time - step);
+  const Vector mouth = nozzle_.mouth(time);
   const double extruded = nozzle_.extruded(time);
   Seed seed;
-  for (std::size_t a = 0; a < 3; ++a) seed.velocity[a] = (mouth[a] - before[a]) / step;
-  seed.velocity[2] -= (extruded - nozzle_.extruded(time - step)) / step;
+  seed.velocity = NozzleMotion(nozzle_, time, step, cell_).column();
   seed.flocculation = flocculation_;
   while (is_due(time)) {
     const double begin = begin_of(discs_), end = end_of(discs_);

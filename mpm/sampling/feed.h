@@ -18,7 +18,7 @@ class Feed {
   /// `per_axis` particles along each axis of a cell (m); `half`: only y > 0 is computed.
   Feed(const Nozzle&, double cell, int per_axis, bool half, double flocculation);
 
-  /// The discs that are due at `time`, moving as the column has on average over the `step` s before.
+  /// The discs that are due at `time`, moving as the column does on average over the `step` s after it.
   std::vector<Seed> due(double time, double step);
   /// Takes those that are due at `time` for come, as where a run is gone on with.
   void skip_to(double time);

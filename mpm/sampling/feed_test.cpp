@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -12,12 +13,13 @@ namespace {
 
 constexpr double cell = 0.002, bore = 0.0125, printing = 0.03, extrusion = 0.0336;
 
+/// It stands until the time is 0.
 Nozzle nozzle() {
   Nozzle n;
   n.bore = bore;
   n.wall = 0.003;
-  n.mouth = [](double time) -> Vector { return {0.1 + printing * time, 0.0, 0.013}; };
-  n.extruded = [](double time) { return extrusion * time; };
+  n.mouth = [](double time) -> Vector { return {0.1 + printing * std::max(time, 0.0), 0.0, 0.013}; };
+  n.extruded = [](double time) { return extrusion * std::max(time, 0.0); };
   n.column = 0.0501;
   return n;
 }

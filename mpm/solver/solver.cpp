@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -75,10 +76,10 @@ class SolverOf final : public Solver {
     for (const auto slot : blocks_.occupied()) {
       const BlockView block = blocks_.view(slot);
       const std::vector<CellIndex> of_block = blocks_.cells_of(slot);
-      fill(batch, block);
+      if (leaves) fill(batch, block);
       leaving.clear();
-      for (std::size_t i = 0; i < batch.count; ++i) {
-        if (leaves({batch.position[0][i], batch.position[1][i], batch.position[2][i]})) {
+      for (std::size_t i = 0; i < of_block.size(); ++i) {
+        if (leaves && leaves({batch.position[0][i], batch.position[1][i], batch.position[2][i]})) {
           leaving.add(batch, i);
           continue;
         }
@@ -615,22 +616,30 @@ void require_stable(std::uint32_t faults, double dissipated, double step) {
                     faults, step));
 }
 
+namespace {
+
+/// Every array of a batch.
+template <class Batch>
+auto arrays_of(Batch& b) {
+  return std::array{&b.position[0],  &b.position[1],   &b.position[2],  &b.velocity[0],
+                    &b.velocity[1],  &b.velocity[2],   &b.mass,         &b.volume,
+                    &b.rate,         &b.shear_stress,  &b.raw_pressure, &b.acting_pressure,
+                    &b.flocculation, &b.elastic_energy};
+}
+
+}  // namespace
+
 void ParticleBatch::clear() {
   count = 0;
-  for (std::vector<double>* array : arrays()) array->clear();
+  for (auto* array : arrays_of(*this)) array->clear();
 }
 
 void ParticleBatch::add(const ParticleBatch& other, std::size_t particle) {
   ++count;
-  const auto to = arrays(), from = const_cast<ParticleBatch&>(other).arrays();
+  const auto to = arrays_of(*this);
+  const auto from = arrays_of(other);
   for (std::size_t k = 0; k < to.size(); ++k)
     if (!from[k]->empty()) to[k]->push_back((*from[k])[particle]);
-}
-
-std::vector<std::vector<double>*> ParticleBatch::arrays() {
-  return {&position[0],  &position[1],   &position[2], &velocity[0],  &velocity[1],  &velocity[2],
-          &mass,         &volume,        &rate,        &shear_stress, &raw_pressure, &acting_pressure,
-          &flocculation, &elastic_energy};
 }
 
 SolverState Solver::state() {

@@ -90,9 +90,6 @@ struct ParticleBatch {
   void clear();
   /// Takes up a particle of another batch, of the same solver.
   void add(const ParticleBatch& other, std::size_t particle);
-
- private:
-  std::vector<std::vector<double>*> arrays();
 };
 
 /// CPU per stage of the steps so far.
@@ -135,7 +132,7 @@ class Solver {
   virtual Vector wall_force(std::size_t wall) const = 0;
   /// Force of the nozzles on the material in the last step, N.
   virtual Vector nozzle_force() const = 0;
-  /// Between two steps: takes out the particles for whose place (m) `leaves` is true, after `use` has seen them,
+  /// Between two steps: takes out the particles for whose place (m) `leaves` is true (nobody where it is empty), after `use` has seen them,
   /// and puts others in. The rest keep all that they have, and their order in each cell.
   virtual void exchange(const std::function<bool(const Vector&)>& leaves,
                         const std::function<void(const ParticleBatch&)>& use,

@@ -153,7 +153,6 @@ Pieces Printing::pieces(const Scene& scene) const {
                        .begins_at = layer.begins_at,
                        .gone_at = layer.ends_at});
   p.drop = body_height();
-  p.domain = Domain{.radius = never, .height = 4.0 * height};
   p.gauged =
       SectionGauge{.behind = station_behind * nozzle_diameter, .length = station_length * nozzle_diameter};
   p.profile = {ProfileAxis::Of::depth, "y_m"};
