@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "runs/command.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "runs/temporary_folder.h"
@@ -145,7 +146,7 @@ TEST_F(RunFolders, WhatTheMachineEndedIsGoneOnWith) {
             5)
       << log();
   EXPECT_EQ(call("flowrest $short --set output.checkpoint_interval=0.1 --quiet -o run"), 2);
-  EXPECT_THAT(log(), HasSubstr("flowrest mpm --resume run"));
+  EXPECT_THAT(log(), HasSubstr(runs::shell_word(FLOWREST_PROGRAM) + " mpm --resume run"));
   ASSERT_EQ(call("flowrest mpm --quiet --resume run"), 0) << log();
   EXPECT_EQ(text_of(folder / "run" / "history.csv"), text_of(folder / "whole" / "history.csv"));
   EXPECT_EQ(run().info["verdict"], run("whole").info["verdict"]);

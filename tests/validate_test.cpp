@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runs/command.h"
 #include "runs/process.h"
 #include "runs/temporary_folder.h"
 
@@ -91,7 +92,7 @@ TEST_F(ValidateTest, InterruptedItSaysHowToGoOnAndLeavesAPage) {
   EXPECT_THAT(log(), HasSubstr("the same command goes on with it"));
   std::ifstream page(folder / "out" / "index.html");
   const std::string html{std::istreambuf_iterator<char>(page), {}};
-  // With the path of the program, where it is not the one that a shell finds by its name.
-  EXPECT_THAT(html, HasSubstr("Make what is missing: <code>"));
-  EXPECT_THAT(html, HasSubstr("flowrest validate mix-a-slump-sf0 -o "));
+  // With the path of the program, which is not the one that a shell finds by its name.
+  EXPECT_THAT(html, HasSubstr("Make what is missing: <code>" + runs::shell_word(FLOWREST_PROGRAM) +
+                              " validate mix-a-slump-sf0 -o "));
 }
