@@ -177,8 +177,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   make_labels_unique(comparison.runs);
   sort_runs(comparison.runs);
   comparison.title = comparison.runs.front().run.info["title"];
-  comparison.radial = comparison.apparatus->spreads() &&
-                      word(comparison.runs.front().run.info, "/settings/geometry/dimension") != "plane";
+  comparison.radial = radial(comparison.runs.front().run, *comparison.apparatus);
   check_same_scene(comparison);
   note_gauges(comparison);
 

@@ -27,7 +27,7 @@ Series gauge_series(const runs::Run& run, const ApparatusReport& apparatus) {
   const bool in_profiles = apparatus.spreads() || !apparatus.has_depth();
   if (!series.empty() || run.history.has(gauge.column) || !in_profiles) return series;
   for (const auto& profile : run.profiles) {
-    const double value = apparatus.spreads() ? runs::spread(profile.coordinate, profile.value, spread_depth)
+    const double value = apparatus.spreads() ? runs::spread(depth_of(profile, run), spread_depth)
                                              : *std::max_element(profile.value.begin(), profile.value.end());
     if (!std::isfinite(value)) continue;
     series.time.push_back(profile.time);
@@ -99,6 +99,15 @@ std::string trouble_of(const RunView& view) {
 }
 
 }  // namespace
+
+bool radial(const runs::Run& run, const ApparatusReport& apparatus) {
+  return apparatus.spreads() && word(run.info, "/settings/geometry/dimension") != "plane";
+}
+
+runs::DepthView depth_of(const runs::Profile& profile, const runs::Run& run) {
+  const bool plane = word(run.info, "/settings/geometry/dimension") == "plane";
+  return {profile.coordinate, profile.value, plane ? runs::About::plane : runs::About::axis};
+}
 
 std::optional<double> number(const Json& json, const char* pointer) {
   const Json::json_pointer at(pointer);

@@ -6,9 +6,16 @@
 #include <vector>
 
 #include "compare/comparison.h"
+#include "runs/nose.h"
 
 /// A run made ready for comparison: read, named, with its gauge as a series.
 namespace flowrest::compare {
+
+/// Whether a run's profiles are against a radius: those of slumps are, but in a plane.
+bool radial(const runs::Run&, const ApparatusReport&);
+
+/// A profile of depth as gauges read it; it looks into the profile.
+runs::DepthView depth_of(const runs::Profile&, const runs::Run&);
 
 /// Values of run.json by JSON pointer; empty where they are missing or of another type.
 std::optional<double> number(const nlohmann::ordered_json& json, const char* pointer);

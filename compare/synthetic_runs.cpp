@@ -45,13 +45,14 @@ void write(const Slump& slump, const std::filesystem::path& directory) {
   const auto height_of = [&](double radius) { return 15.0 * volume / (8.0 * pi * radius * radius); };
   const auto depth_at = [&](double time) {
     const double radius = length * slump.radius_at(time);
-    runs::RadialDepthAccumulator rings(length * slump.cell, length * 0.45);
+    runs::DepthAccumulator rings(runs::About::axis, length * slump.cell, length * 0.45,
+                                 0.1 * length * slump.cell);
     constexpr int shells = 4000;
     for (int i = 0; i < shells; ++i) {
       const double width = radius / shells, r = (i + 0.5) * width;
       rings.add(r, 2.0 * pi * r * width * height_of(radius) * std::sqrt(1.0 - r / radius));
     }
-    return rings.depth();
+    return rings;
   };
   const int rows = static_cast<int>(std::lround(slump.end / 0.05));
   for (int i = 0; i <= rows; ++i) {
@@ -62,8 +63,8 @@ void write(const Slump& slump, const std::filesystem::path& directory) {
     writer.history(std::vector{pace * time, 1e3 * length * spread, 1e3 * height_of(length * radius),
                                volume * (1.0 - 1e-5 * time / slump.end), shear_rate / pace});
     if (i % 5 == 0) {
-      const auto depth = depth_at(time);
-      writer.profile(pace * time, depth.centres(), depth.depth);
+      const auto rings = depth_at(time);
+      writer.profile(pace * time, rings.centres(), rings.depth());
     }
   }
   writer.info()["cpu_s"] = slump.cpu;

@@ -148,10 +148,12 @@ std::string plug_in_stress(const Scene& scene) {
       "concreteViscosity\n{{\n    transportModel      Newtonian;\n    nu                  {1};\n}}\n\n"
       "concreteStress\n{{\n    laminar\n    {{\n        laminarModel        {0};\n        {0}Coeffs\n"
       "        {{\n{2}phase               concrete;\n{2}rho                 {3};  // kg/m3\n"
+      "{2}faceWeight          {7};\n"
       "{2}youngsModulus       {4};  // Pa\n{2}poissonRatio        {5};\n{6}        }}\n    }}\n}}\n",
       laws::visit(material.model, [](auto law) { return plug_in_type(law); }),
       material.plastic_viscosity / material.density, indent, material.density, material.youngs_modulus,
-      material.poisson_ratio, common_coefficients(scene, indent) + own_coefficients(material, indent));
+      material.poisson_ratio, common_coefficients(scene, indent) + own_coefficients(material, indent),
+      scenes::to_string(scene.foam.face_weight));
 }
 
 /// Watches the velocity from step to step, and lets a slump's step grow.

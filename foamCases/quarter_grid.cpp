@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "foamCases/concrete_rates.h"
@@ -103,6 +104,37 @@ double front(const QuarterGrid& grid, const std::vector<double>& fraction) {
   return runs::nothing;
 }
 
+/// Depth over rings as wide as a cell, of the concrete in each column of the whole slump in m3: a ring gets
+/// what of a column's plan it covers.
+runs::RadialDepth depth_over_rings(const QuarterGrid& grid, const std::vector<double>& columns) {
+  const double width = grid.width;
+  runs::RadialDepth rings{width, std::vector<double>(static_cast<std::size_t>(grid.side), 0.0)};
+  for (int j = 0; j < grid.side; ++j)
+    for (int i = 0; i < grid.side; ++i) {
+      const double concrete = columns[grid.index(i, j, 0)];
+      if (!(concrete > 0.0)) continue;
+      const auto within = [&](int ring) {  // share of the column's plan inside a ring's inner edge
+        const double r = ring * width, west = i * width, south = j * width;
+        return (disc_in_rectangle(r, west + width, south + width) -
+                disc_in_rectangle(r, west, south + width) - disc_in_rectangle(r, west + width, south) +
+                disc_in_rectangle(r, west, south)) /
+               (width * width);
+      };
+      double inside = 0.0;
+      const int last = grid.side - 1;
+      for (int ring = std::min(last, static_cast<int>(std::hypot(i, j))); inside < 1.0; ++ring) {
+        // What lies beyond the last ring counts to the last ring.
+        const double further = ring < last ? std::min(1.0, within(ring + 1)) : 1.0;
+        rings.depth[static_cast<std::size_t>(ring)] += (further - inside) * concrete;
+        inside = further;
+        if (ring == last) break;
+      }
+    }
+  for (std::size_t ring = 0; ring < rings.depth.size(); ++ring)
+    rings.depth[ring] /= std::numbers::pi * width * width * (2.0 * static_cast<double>(ring) + 1.0);
+  return rings;
+}
+
 }  // namespace
 
 QuarterGrid quarter_grid(const scenes::Scene& scene) {
@@ -148,7 +180,7 @@ std::vector<double> shear_rate(const QuarterGrid& grid, const std::vector<double
 
 SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, double density, bool slip) {
   SlumpGauges gauges;
-  runs::RadialDepthAccumulator rings(grid.width, grid.side * grid.width);
+  std::vector<double> columns(grid.columns(), 0.0);  // m3, of concrete
   const auto rate = fields.shear_rate.empty() ? shear_rate(grid, fields.velocity, slip) : fields.shear_rate;
   ConcreteRates inside;
   std::vector<runs::Weighted> at_base;
@@ -159,7 +191,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
     const double* u = &fields.velocity[3 * index];
     gauges.volume += concrete;
     gauges.kinetic_energy += 0.5 * density * concrete * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-    if (concrete > 0.0) rings.add(std::hypot(grid.centre(i), grid.centre(j)), concrete);
+    columns[grid.index(i, j, 0)] += concrete;
     if (fields.fraction[index] < nearly_full) return;
     inside.add(rate[index], concrete, fields.flocculation, index);
     if (!slip)
@@ -167,7 +199,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
           {grid.row_centre(row), grid.row_height(row), grid.row_height(row), concrete, rate[index]});
     if (row == 0) at_base.emplace_back(std::hypot(u[0], u[1]) / (0.5 * grid.row_height(0)), 1.0);
   });
-  const auto depth = rings.depth();
+  const runs::RadialDepth depth = depth_over_rings(grid, columns);
   gauges.radius = depth.centres();
   gauges.depth = depth.depth;
   for (int k = 0; k < grid.side; ++k) {

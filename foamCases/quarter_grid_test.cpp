@@ -76,7 +76,7 @@ TEST(QuarterGauge, SeesTheShapeAndTheEnergyOfAKnownBody) {
   const double volume = 0.5 * std::numbers::pi * 0.09 * 0.040;
   EXPECT_NEAR(gauges.volume, volume, 2e-3 * volume);
   EXPECT_NEAR(gauges.kinetic_energy, 0.5 * 2300.0 * volume * 0.09 / 3.0, 5e-3 * gauges.kinetic_energy);
-  EXPECT_NEAR(runs::spread(gauges.radius, gauges.depth, 0.003), 0.6 * std::sqrt(37.0 / 40.0), 2e-3);
+  EXPECT_NEAR(runs::spread(gauges.profile(), 0.003), 0.6 * std::sqrt(37.0 / 40.0), 2e-3);
   EXPECT_NEAR(gauges.trapped_air, 0.0, 1e-15);
   EXPECT_EQ(gauges.base_shear_rate_p99, 0.0);
   // Away from edges: D = diag(1, 1, 0), so 2 D:D = 4.

@@ -47,11 +47,13 @@ SlumpRows slump_rows(const scenes::Scene& scene, double columns) {
   const double cell = scene.foam.cell;
   const int rows = std::max(2, cells_over(body_height, cell));
   SlumpRows result;
-  result.base_rows = std::max(1, scene.foam.base_rows);
-  result.cone_rows = rows - 1;
+  const double thin = scene.foam.base_height.value_or(0.0) * rows / body_height;
+  const int cut = std::clamp(static_cast<int>(std::lround(thin)), 1, rows - 1);
+  result.base_rows = cut * std::max(1, scene.foam.base_rows);
+  result.cone_rows = rows - cut;
   result.air_rows = cells_over(domain_height - body_height, cell);
   result.cone_row_height = body_height / rows;
-  result.base_row_height = result.cone_row_height / result.base_rows;
+  result.base_row_height = cut * result.cone_row_height / result.base_rows;
   result.air_row_height = (domain_height - body_height) / result.air_rows;
   return result;
 }

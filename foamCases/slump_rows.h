@@ -9,7 +9,7 @@
 namespace flowrest::foam {
 
 struct SlumpRows {
-  int base_rows = 0;             ///< of the base layer, as high as one row of the cone
+  int base_rows = 0;             ///< of the base layer, which replaces rows of the cone
   int cone_rows = 0;             ///< from there to the cone's top
   int air_rows = 0;              ///< above it
   double base_row_height = 0.0;  ///< m
@@ -30,8 +30,8 @@ struct SlumpRows {
   double base_height() const { return base_rows * base_row_height; }  ///< m, of the base layer
 };
 
-/// Rows of about foam.cell, fitted to the cone's top and the domain's top; the lowest is cut into
-/// foam.base_rows.
+/// Rows of about foam.cell, fitted to the cone's top and the domain's top; each of them up to
+/// foam.base_height is cut into foam.base_rows.
 /// @throws scenes::SceneError where they cannot be laid out, or the whole mesh has too many cells (columns:
 /// of cells side by side).
 SlumpRows slump_rows(const scenes::Scene&, double columns);

@@ -29,9 +29,9 @@ void SlumpSampler::sample(double time, const ReadField& read) {
   conservation_.add(time, gauges.volume, gauges.kinetic_energy);
   state_.time = time;
   const double spread_depth = scene().gauges.spread_depth;
-  state_.spread = runs::spread(gauges.radius, gauges.depth, spread_depth);
+  state_.spread = runs::spread(gauges.profile(), spread_depth);
   state_.front = gauges.front;
-  state_.height = runs::centre_depth(gauges.radius, gauges.depth, spread_depth);
+  state_.height = runs::centre_depth(gauges.profile(), spread_depth);
   state_.rim_depth = gauges.rim_depth;
   state_.overstressing_rate = gauges.overstressing_rate_p99;
   state_.trapped_air = gauges.trapped_air;
@@ -44,7 +44,7 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
   using namespace runs::column;
   runs::Row row;
   row.add(runs::column::time, time)
-      .add(runs::spread_columns(gauges.radius, gauges.depth, scene().gauges))
+      .add(runs::spread_columns(gauges.profile(), scene().gauges))
       .add(front, gauges.front)
       .add(height, state_.height)
       .add(volume, gauges.volume)

@@ -38,6 +38,8 @@ struct SlumpGauges {
   double trapped_air = 0.0;  ///< m3, of air with fuller cells above it
   double rim_depth = 0.0;    ///< m, depth in the outermost ring
   runs::LayerMeter layer;    ///< of cells at least 90 % full
+
+  runs::DepthView profile() const { return {radius, depth, runs::About::axis}; }
 };
 
 /// `slip` says that the base does not hold the concrete back, which the shear rate in the lowest row needs.

@@ -64,8 +64,8 @@ TEST(WedgeGauge, GivesVolumeDepthAndSpreadOfAKnownShape) {
   const auto depth = [&](double r) { return std::max(0.0, 0.040 * (1.0 - r * r / (edge * edge))); };
   const auto gauges = gauge_slump(grid, filled_to(grid, depth), 2300.0, false);
   EXPECT_NEAR(gauges.volume, 0.5 * std::numbers::pi * edge * edge * 0.040, 1e-3 * gauges.volume);
-  EXPECT_NEAR(runs::spread(gauges.radius, gauges.depth, 0.003), 0.600, 5e-4);
-  EXPECT_NEAR(runs::centre_depth(gauges.radius, gauges.depth, 0.003), 0.040 * (1.0 + 0.3 / 16.0), 1e-4);
+  EXPECT_NEAR(runs::spread(gauges.profile(), 0.003), 0.600, 5e-4);
+  EXPECT_NEAR(runs::centre_depth(gauges.profile(), 0.003), 0.040 * (1.0 + 0.3 / 16.0), 1e-4);
   for (std::size_t i = 0; i < gauges.radius.size(); ++i)
     ASSERT_NEAR(gauges.depth[i], depth(gauges.radius[i]), 1e-14) << "ring " << i;
   EXPECT_EQ(gauges.kinetic_energy, 0.0);
@@ -89,10 +89,10 @@ TEST(WedgeGauge, ACopyAHundredthAsLargeGivesTheSameNumbersScaled) {
   const auto large = gauges_of(large_scene, 1.0), small = gauges_of(small_scene, 0.01);
   const auto same = [](double a, double b) { EXPECT_NEAR(a / b, 1.0, 1e-9); };
   for (const double times : {0.5, 1.0, 2.0})
-    same(100.0 * runs::spread(small.radius, small.depth, times * small_scene.gauges.spread_depth),
-         runs::spread(large.radius, large.depth, times * large_scene.gauges.spread_depth));
-  same(100.0 * runs::centre_depth(small.radius, small.depth, small_scene.gauges.spread_depth),
-       runs::centre_depth(large.radius, large.depth, large_scene.gauges.spread_depth));
+    same(100.0 * runs::spread(small.profile(), times * small_scene.gauges.spread_depth),
+         runs::spread(large.profile(), times * large_scene.gauges.spread_depth));
+  same(100.0 * runs::centre_depth(small.profile(), small_scene.gauges.spread_depth),
+       runs::centre_depth(large.profile(), large_scene.gauges.spread_depth));
   same(100.0 * small.front, large.front);
   same(1e6 * small.volume, large.volume);
   same(0.1 * small.shear_rate_p99, large.shear_rate_p99);
@@ -105,7 +105,7 @@ TEST(WedgeGauge, WithoutConcreteItReadsNothingAndNotZero) {
   EXPECT_TRUE(std::isnan(gauges.front));
   EXPECT_TRUE(std::isnan(gauges.shear_rate_p99));
   EXPECT_TRUE(std::isnan(gauges.base_shear_rate_p99));
-  EXPECT_TRUE(std::isnan(runs::spread(gauges.radius, gauges.depth, 0.003)));
+  EXPECT_TRUE(std::isnan(runs::spread(gauges.profile(), 0.003)));
 }
 
 TEST(WedgeGauge, CountsRowsOfUnequalHeight) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "runs/bins.h"
+
 namespace flowrest::runs {
 
 namespace {
@@ -26,59 +28,57 @@ double RadialDepth::volume() const {
   return sum * std::numbers::pi * spacing * spacing;
 }
 
-RadialDepthAccumulator::RadialDepthAccumulator(double spacing, double largest_radius) : spacing_(spacing) {
-  if (!(spacing > 0.0) || !(largest_radius > 0.0) || !std::isfinite(largest_radius / spacing))
-    throw std::invalid_argument("rings need a spacing and a largest radius above 0");
-  volume_.assign(static_cast<std::size_t>(std::max(1.0, std::ceil(largest_radius / spacing - 1e-9))), 0.0);
+DepthAccumulator::DepthAccumulator(About about, double spacing, double extent, double grain)
+    : about_(about), spacing_(spacing), grain_(grain) {
+  if (!(spacing > 0.0) || !(extent > 0.0) || !std::isfinite(extent / spacing))
+    throw std::invalid_argument("rings need a spacing and an extent above 0");
+  if (!(grain > 0.0) || !(grain <= spacing))
+    throw std::invalid_argument("a grain is wider than 0 and no wider than a ring");
+  volume_.assign(static_cast<std::size_t>(std::max(1.0, std::ceil(extent / spacing - 1e-9))), 0.0);
 }
 
-void RadialDepthAccumulator::add(double radius, double volume) {
-  if (!(radius >= 0.0)) throw std::invalid_argument("a radius is negative or not a number");
-  const double position = radius / spacing_ - 0.5;
-  const std::size_t last = volume_.size() - 1;
-  if (position <= 0.0) {
-    volume_.front() += volume;
-    return;
-  }
-  if (position >= static_cast<double>(last)) {
-    volume_.back() += volume;
-    return;
-  }
-  const auto ring = static_cast<std::size_t>(position);
-  const double u = position - static_cast<double>(ring);
-  // A tent in r alone gives the innermost ring 1/12 too much of a uniform layer, and a tent in the area 1/12
-  // too little; both are exact for every other ring, so their mean is exact for all.
-  const double area = ring_area(ring);
-  const double inner = 0.5 * (1.0 - u) * (1.0 + (area + u) / (area + 2.0 * u));
-  volume_[ring] += inner * volume;
-  volume_[ring + 1] += (1.0 - inner) * volume;
+void DepthAccumulator::add(double place, double volume) {
+  if (!(place >= 0.0)) throw std::invalid_argument("a distance from the middle is negative or not a number");
+  const double low = (place - 0.5 * grain_) / spacing_, high = (place + 0.5 * grain_) / spacing_;
+  // Shared by length alone, a uniform layer sampled about an axis leaves 1/24 of a grain squared too much in the
+  // innermost ring, shared by area as much too little; both are exact for every other ring, so their mean is
+  // exact for all. What reaches beyond the middle is mirrored there.
+  const double inner = std::max(0.0, low);
+  const double all = (high - inner) * (high + inner);
+  for_each_bin(low, high, [&](long ring, double overlap) {
+    double share = overlap / (high - low);
+    if (about_ == About::axis) {
+      const double from = std::max(inner, static_cast<double>(ring));
+      const double to = std::min(high, static_cast<double>(ring) + 1.0);
+      share = 0.5 * (share + (to > from ? (to - from) * (to + from) / all : 0.0));
+    }
+    add_to(ring, share * volume);
+  });
 }
 
-RadialDepth RadialDepthAccumulator::depth() const {
-  RadialDepth result{spacing_, volume_};
-  for (std::size_t i = 0; i < volume_.size(); ++i)
-    result.depth[i] /= ring_area(i) * std::numbers::pi * spacing_ * spacing_;
-  return result;
+void DepthAccumulator::add_to(long ring, double volume) {
+  const auto mirrored = static_cast<std::size_t>(ring < 0 ? -1 - ring : ring);
+  volume_[std::min(mirrored, volume_.size() - 1)] += volume;
 }
 
-double spread(std::span<const double> radius, std::span<const double> depth, double threshold) {
-  const std::size_t count = std::min(radius.size(), depth.size());
-  for (std::size_t i = count; i-- > 0;) {
-    if (!(depth[i] > threshold)) continue;
-    if (i + 1 == count) return 2.0 * radius[i];
-    const double fraction = (depth[i] - threshold) / (depth[i] - depth[i + 1]);
-    return 2.0 * (radius[i] + fraction * (radius[i + 1] - radius[i]));
-  }
-  return nothing;
+double DepthAccumulator::area(std::size_t ring) const {
+  return about_ == About::plane ? spacing_ : ring_area(ring) * std::numbers::pi * spacing_ * spacing_;
 }
+
+std::vector<double> DepthAccumulator::depth() const {
+  std::vector<double> depth(volume_.size());
+  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = volume_[i] / area(i);
+  return depth;
+}
+
+std::vector<double> DepthAccumulator::centres() const { return RadialDepth{spacing_, volume_}.centres(); }
+
+double spread(const DepthView& view, double threshold) { return 2.0 * edge_of_depth(view, threshold); }
 
 double front(std::span<const double> centre, std::span<const double> depth, double length,
              double front_depth) {
   if (!depth.empty() && depth.back() > front_depth) return length;
-  for (std::size_t i = depth.size(); i-- > 1;)
-    if (depth[i - 1] > front_depth)
-      return std::lerp(centre[i - 1], centre[i], (depth[i - 1] - front_depth) / (depth[i - 1] - depth[i]));
-  return nothing;
+  return edge_of_depth({centre, depth, About::plane}, front_depth);
 }
 
 double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd end, double length) {
@@ -90,12 +90,13 @@ double depth_at_end(std::span<const double> depth, double bin_width, ChannelEnd 
   return sum / static_cast<double>(bins);
 }
 
-double centre_depth(std::span<const double> radius, std::span<const double> depth, double spread_depth) {
+double centre_depth(const DepthView& view, double spread_depth) {
+  const auto& [radius, depth, about] = view;
   const std::size_t count = std::min(radius.size(), depth.size());
   if (count == 0) return nothing;
   if (count == 1) return depth[0];
   // Without a spread there is no window, and the innermost two rings are taken.
-  const double window = 0.25 * 0.5 * spread(radius, depth, spread_depth);
+  const double window = 0.25 * 0.5 * spread(view, spread_depth);
   // Least squares of c + s r, rings counting by their area.
   double area = 0.0, first = 0.0, second = 0.0, value = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < count && (i < 2 || radius[i] <= window); ++i) {

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "runs/nose.h"
+
 /// Depth and the measures made of it, defined once for every solver: concrete volume per plan area.
 namespace flowrest::runs {
 
@@ -21,34 +23,40 @@ struct RadialDepth {
   double volume() const;
 };
 
-/// Accumulates volumes (of the whole body) into rings. A volume at radius r is shared between the two nearest
-/// ring centres (nearly a tent of one ring's width, corrected so that a uniform layer is uniform up to the
-/// axis), so that the sum is the volume whatever the sampling. What lies beyond the last ring's centre counts
-/// to the last ring.
-class RadialDepthAccumulator {
+/// Shares volumes (of the whole body) out over equal rings about an axis, or equal strips beside a plane. Each
+/// volume lies evenly between its place - grain / 2 and its place + grain / 2: a particle's width as it was
+/// placed. The sum is the volume whatever the sampling, and a uniform layer is uniform up to the axis. What
+/// lies beyond the last ring counts to the last ring.
+class DepthAccumulator {
  public:
-  RadialDepthAccumulator(double spacing, double largest_radius);
-  void add(double radius, double volume);
-  RadialDepth depth() const;
+  /// All in m; the grain is at most `spacing`. @throws std::invalid_argument otherwise
+  DepthAccumulator(About about, double spacing, double extent, double grain);
+  /// `place` is the distance from the axis or the plane, m. `volume` in m3, beside a plane per width in m2.
+  void add(double place, double volume);
+  std::vector<double> depth() const;  ///< m, of each ring
+  std::vector<double> centres() const;
 
  private:
-  double spacing_;
+  double area(std::size_t ring) const;  ///< m2, beside a plane per width in m
+  void add_to(long ring, double volume);
+
+  About about_;
+  double spacing_, grain_;
   std::vector<double> volume_;
 };
 
-/// Twice the radius at which the depth falls through `threshold` for the last time going outwards,
-/// interpolated linearly between ring centres; nothing where the depth is nowhere above it. m
-double spread(std::span<const double> radius, std::span<const double> depth, double threshold);
+/// Twice the distance from the middle at which the depth falls through `threshold` for the last time going
+/// outwards (edge_of_depth); nothing where the depth is nowhere above it. m
+double spread(const DepthView&, double threshold);
 
 /// Depth at the centre, m: the line fitted by least squares to the depths within a quarter of the radius of
 /// the spread at `spread_depth`, two rings at least, each counting by its area, taken at r = 0; nothing
 /// without rings. An arrested profile falls linearly from its centre; the innermost ring alone holds so few
 /// particles that it says more of where they were put.
-double centre_depth(std::span<const double> radius, std::span<const double> depth, double spread_depth);
+double centre_depth(const DepthView&, double spread_depth);
 
-/// Where the depth over equal bins along a channel falls through `front_depth` for the last time,
-/// interpolated between their centres; the channel's length where the last bin is deeper; nothing where none
-/// is. m
+/// Where the depth over equal bins along a channel falls through `front_depth` for the last time
+/// (edge_of_depth); the channel's length where the last bin is deeper; nothing where none is. m
 double front(std::span<const double> centre, std::span<const double> depth, double length,
              double front_depth);
 

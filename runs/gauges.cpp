@@ -56,11 +56,11 @@ bool may_read_nothing(const std::string& column) {
   return known && known->may_be_empty;
 }
 
-Row spread_columns(std::span<const double> radius, std::span<const double> depth, const Gauges& gauges) {
+Row spread_columns(const DepthView& view, const Gauges& gauges) {
   Row row;
   for (const Column* column :
        {&column::spread, &column::spread_at_half_depth, &column::spread_at_twice_depth})
-    row.add(*column, spread(radius, depth, column->threshold(gauges)));
+    row.add(*column, spread(view, column->threshold(gauges)));
   return row;
 }
 

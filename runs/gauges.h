@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runs/columns.h"
+#include "runs/nose.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
@@ -23,7 +24,7 @@ nlohmann::ordered_json gauge_definitions(const scenes::Scene&);
 bool may_read_nothing(const std::string& column);
 
 /// The columns of a depth about a middle: the spread at its depth, at half and at twice of it.
-Row spread_columns(std::span<const double> radius, std::span<const double> depth, const scenes::Gauges&);
+Row spread_columns(const DepthView&, const scenes::Gauges&);
 
 /// The columns of a channel's ends, of the depth over bins of `bin_width` in m.
 Row end_columns(std::span<const double> depth, double bin_width, const scenes::Gauges&);

@@ -33,6 +33,8 @@ enum class FoamMixing { arithmetic, harmonic, mass_weighted, saturating };
 enum class FoamStrainRate { mixture, concrete };
 /// How much of a wall holds the concrete of a cell that it does not fill (plug-in only).
 enum class FoamWetting { fraction, geometric };
+/// How the parts that concrete has in two cells make that of the face between them (plug-in's solid only).
+enum class FoamFaces { linear, harmonic };
 
 /// The names used in scenes, on the command line and in run.json, such as "elasto-viscoplastic".
 std::string to_string(Dimension);
@@ -48,5 +50,6 @@ std::string to_string(FoamLaws);
 std::string to_string(FoamMixing);
 std::string to_string(FoamStrainRate);
 std::string to_string(FoamWetting);
+std::string to_string(FoamFaces);
 
 }  // namespace flowrest::scenes

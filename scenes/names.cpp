@@ -89,6 +89,12 @@ const NameTable<FoamWetting>& names_of(FoamWetting) {
   return table;
 }
 
+const NameTable<FoamFaces>& names_of(FoamFaces) {
+  static const NameTable<FoamFaces> table = {{FoamFaces::linear, "linear"},
+                                             {FoamFaces::harmonic, "harmonic"}};
+  return table;
+}
+
 namespace {
 
 template <class Choice>
@@ -114,6 +120,7 @@ std::string to_string(FoamLaws choice) { return name_of(choice); }
 std::string to_string(FoamMixing choice) { return name_of(choice); }
 std::string to_string(FoamStrainRate choice) { return name_of(choice); }
 std::string to_string(FoamWetting choice) { return name_of(choice); }
+std::string to_string(FoamFaces choice) { return name_of(choice); }
 
 Model model_from_name(const std::string& name) {
   if (const auto model = choice_named<Model>(name)) return *model;

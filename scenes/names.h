@@ -25,6 +25,7 @@ const NameTable<FoamLaws>& names_of(FoamLaws);
 const NameTable<FoamMixing>& names_of(FoamMixing);
 const NameTable<FoamStrainRate>& names_of(FoamStrainRate);
 const NameTable<FoamWetting>& names_of(FoamWetting);
+const NameTable<FoamFaces>& names_of(FoamFaces);
 
 /// Every name of a choice.
 template <class Choice>

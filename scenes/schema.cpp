@@ -309,6 +309,9 @@ std::vector<Key> foam_keys() {
       integer(
           "foam.base_rows", 0, 64, AT(draft.scene.foam.base_rows),
           "rows of cells into which the lowest row of a slump's mesh is cut; 0: 4 with the plug-in, else 1"),
+      number("foam.base_height", "m", above(0.0, largest_length), AT(draft.scene.foam.base_height),
+             "height up to which a slump's rows are cut like the lowest")
+          .otherwise("foam.cell"),
       number("foam.air_rise_time", "s", from(0.0, largest_time), AT(draft.scene.foam.air_rise_time),
              "time in which air that a slump has rolled over rises through it (plug-in); 0: it stays")
           .otherwise("0.1 with the plug-in, else 0"),
@@ -322,6 +325,9 @@ std::vector<Key> foam_keys() {
              "fraction of concrete from which its stress counts in full, of the mixing `saturating`"),
       choice("foam.wetting", AT(draft.scene.foam.wetting),
              "how much of a wall holds the concrete of a cell it does not fill (plug-in)"),
+      choice("foam.face_weight", AT(draft.scene.foam.face_weight),
+             "how the parts that concrete has in two cells make that of the face between them "
+             "(elasto-viscoplastic, plug-in)"),
       choice("foam.strain_rate", AT(draft.scene.foam.strain_rate),
              "whose shear rate the law takes in cells with air (plug-in)"),
   };

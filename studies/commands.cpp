@@ -13,6 +13,7 @@
 #include "scenes/installation.h"
 #include "scenes/text.h"
 #include "studies/accuracy.h"
+#include "studies/cards/card.h"
 #include "studies/results.h"
 #include "studies/validation/validation.h"
 #include "studies/verification/verification.h"
@@ -212,12 +213,46 @@ void add_verify(CLI::App& app) {
   });
 }
 
+void add_judge(CLI::App& app) {
+  struct Arguments {
+    std::string card, answer;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("judge", "Hold an answer against a benchmark card, whoever computed it");
+  command->add_option("card", arguments->card, "A card's name or file; without one they are listed");
+  auto* answer =
+      command->add_option("answer", arguments->answer,
+                          "A run directory, or a CSV file: time_s and a column for each quantity, or "
+                          "quantity and value; without one the card is shown");
+  command->add_flag("--json", arguments->json, "End with a machine-readable line")->needs(answer);
+  command->callback([arguments] {
+    if (arguments->card.empty()) {
+      for (const std::string& name : cards::card_names())
+        fmt::print("{}: {}\n", name, cards::load_card(name).title);
+      return;
+    }
+    const cards::Card card = cards::load_card(arguments->card);
+    if (arguments->answer.empty()) {
+      fmt::print("{}", cards::shown(card));
+      return;
+    }
+    const auto judged = cards::judge(card, arguments->answer);
+    fmt::print("{}", cards::shown(judged));
+    if (arguments->json) fmt::print("{}\n", cards::to_json(card, judged));
+    constexpr int numerics_failed = 3;
+    if (!cards::agrees(judged)) throw CLI::RuntimeError(numerics_failed);
+  });
+}
+
 }  // namespace
 
 void add_commands(CLI::App& app) {
   add_study(app);
   add_verify(app);
   validation::add_command(app);
+  add_judge(app);
   add_job(app);
 }
 

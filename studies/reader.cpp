@@ -13,6 +13,7 @@
 #include "scenes/text.h"
 #include "studies/quantities.h"
 #include "studies/study.h"
+#include "studies/toml_table.h"
 
 namespace flowrest::studies {
 
@@ -23,138 +24,6 @@ using scenes::Faults;
 using scenes::joined;
 using scenes::Location;
 using scenes::SceneError;
-
-std::string kind_of(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "an array";
-    case toml::node_type::string:
-      return "a string";
-    case toml::node_type::integer:
-      return "an integer";
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "a boolean";
-    default:
-      return "a date or a time";
-  }
-}
-
-/// A table being read: every key is asked for once, what is left over is unknown.
-class Table {
- public:
-  Table(const toml::table& table, std::string name, const std::string& source, Faults& faults)
-      : table_(table), name_(std::move(name)), source_(source), faults_(faults) {}
-
-  Location where() const { return place(table_.source().begin); }
-  Location where(const std::string& key) const {
-    const toml::node* node = table_.get(key);
-    return node ? place(node->source().begin) : where();
-  }
-  const toml::node* get(const std::string& key) {
-    known_.push_back(key);
-    return table_.get(key);
-  }
-  void fault(const std::string& key, const std::string& what) {
-    faults_.add(where(key), fmt::format("{}{}{} {}", name_, name_.empty() ? "" : ".", key, what));
-  }
-
-  std::string text(const std::string& key, const std::string& otherwise = "") {
-    const toml::node* node = get(key);
-    if (!node) return otherwise;
-    if (const auto* string = node->as_string(); string && string->get().size() <= longest_text)
-      return string->get();
-    fault(key, "must be a string, not " + kind_of(*node));
-    return otherwise;
-  }
-
-  double number(const std::string& key, double otherwise, double low, double high) {
-    const toml::node* node = get(key);
-    if (!node) return otherwise;
-    const auto value = node->value<double>();
-    if (node->is_number() && value && std::isfinite(*value) && *value >= low && *value <= high) return *value;
-    fault(key, fmt::format("must be a number from {:g} to {:g}", low, high));
-    return otherwise;
-  }
-
-  /// Strings; one alone is a list of one.
-  std::vector<std::string> texts(const std::string& key) {
-    const toml::node* node = get(key);
-    std::vector<std::string> list;
-    if (!node) return list;
-    const auto take = [&](const toml::node& item) {
-      if (const auto* string = item.as_string())
-        list.push_back(string->get());
-      else
-        faults_.add(place(item.source().begin),
-                    fmt::format("{}.{} must hold strings, not {}", name_, key, kind_of(item)));
-    };
-    if (const auto* array = node->as_array()) {
-      for (const toml::node& item : *array) take(item);
-      if (array->empty()) fault(key, "is empty; allowed: one string or more");
-    } else {
-      take(*node);
-    }
-    return list;
-  }
-
-  std::vector<double> numbers(const std::string& key) {
-    const toml::node* node = get(key);
-    std::vector<double> list;
-    if (!node) return list;
-    const auto* array = node->as_array();
-    if (!array) {
-      fault(key, "must be an array of numbers, not " + kind_of(*node));
-      return list;
-    }
-    for (const toml::node& item : *array) {
-      const auto value = item.value<double>();
-      if (item.is_number() && value && std::isfinite(*value))
-        list.push_back(*value);
-      else
-        faults_.add(place(item.source().begin), fmt::format("{}.{} must hold finite numbers", name_, key));
-    }
-    return list;
-  }
-
-  /// The table of this key, if it is one.
-  const toml::table* table(const std::string& key) {
-    const toml::node* node = get(key);
-    if (!node) return nullptr;
-    if (!node->is_table()) fault(key, "must be a table, not " + kind_of(*node));
-    return node->as_table();
-  }
-
-  /// Refuses every key that was not asked for.
-  void refuse_others() {
-    for (auto&& [name, node] : table_) {
-      const std::string key(name.str());
-      if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-      const std::string near = scenes::nearest(key, known_);
-      faults_.add(place(name.source().begin),
-                  fmt::format("unknown key {}{}; allowed: {}",
-                              scenes::quoted(name_.empty() ? key : name_ + "." + key),
-                              near.empty() ? "" : ", nearest is " + near, joined(known_)));
-    }
-  }
-
-  Location place(const toml::source_position& position) const {
-    return {source_, position.line, position.column};
-  }
-  const std::string& source() const { return source_; }
-  Faults& faults() { return faults_; }
-
- private:
-  static constexpr std::size_t longest_text = 4096;
-  const toml::table& table_;
-  std::string name_;
-  const std::string& source_;
-  Faults& faults_;
-  std::vector<std::string> known_;
-};
 
 std::string unknown(const std::string& what, const std::string& given,
                     const std::vector<std::string>& allowed) {
@@ -516,21 +385,9 @@ Study parse_study(const std::string& text, const fs::path& path) {
   study.source = text;
   const std::string source = path.string();
   Faults faults;
-  const Location start{source, 1, 1};
-  constexpr std::ptrdiff_t most_dots = 10000;  // toml++ puts no bound on the depth of dotted keys
-  if (text.size() > scenes::largest_text || std::count(text.begin(), text.end(), '.') > most_dots)
-    throw SceneError(start.text() + ": is larger than a study can be");
-  if (const std::string fault = scenes::encoding_fault(text); !fault.empty())
-    throw SceneError(start.text() + ": " + fault);
-  try {
-    const toml::table document = toml::parse(std::string_view(text));
-    Table table(document, "", source, faults);
-    read_study(study, table);
-  } catch (const toml::parse_error& error) {
-    const auto& at = error.source().begin;
-    faults.add({source, at.line, at.column},
-               "is not valid TOML: " + scenes::escaped(std::string(error.description())));
-  }
+  const toml::table document = parsed_toml(text, source, "a study");
+  Table table(document, "", source, faults);
+  read_study(study, table);
   faults.raise();
   return study;
 }
@@ -541,11 +398,7 @@ Study load_study(const std::string& study) {
   if (!fs::is_regular_file(path, error))
     throw SceneError(scenes::escaped(path.string()) +
                      ": no such file; allowed: a study's TOML file, or one of " + joined(list_studies()));
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw SceneError(scenes::escaped(path.string()) + ": cannot be read");
-  return parse_study(text.str(), path);
+  return parse_study(text_of(path), path);
 }
 
 }  // namespace flowrest::studies

@@ -17,8 +17,8 @@ TEST(ElementsAndFilm, AgreeOnceTheSlumpIsThin) {
   for (const double time : {5.0, 10.0, 20.0}) {
     elements::test::advance(slump, time);
     film.advance_to(time);
-    const double spread =
-        1e3 * runs::spread(film.state().centres(), film.state().depth, problem.spread_depth);
+    const auto centres = film.state().centres();
+    const double spread = 1e3 * runs::spread({centres, film.state().depth}, problem.spread_depth);
     EXPECT_NEAR(elements::test::spread_mm(slump) / spread, 1.0, 5e-3) << time;
   }
 }

@@ -332,8 +332,9 @@ class SlumpReport : public ApparatusReport {
       film.advance_to(std::min(row * output.history_interval, scene.time.end));
       const auto& state = film.state();
       const auto radius = state.centres();
-      spread = runs::spread(radius, state.depth, spread_depth);
-      height = runs::centre_depth(radius, state.depth, spread_depth);
+      const runs::DepthView profile{radius, state.depth};
+      spread = runs::spread(profile, spread_depth);
+      height = runs::centre_depth(profile, spread_depth);
       writer.history(slump_row(state.time, spread, height, state.volume()));
       if (row % rows_per_profile == 0 || row == rows) writer.profile(state.time, radius, state.depth);
     }

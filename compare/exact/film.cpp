@@ -171,7 +171,8 @@ Approach approach_to_rest(const Bingham& material, double gravity, double radius
     SpreadingFilm film = bingham_film(material, gravity, radius, volume, domain_radius, rings, plug_pulls);
     const auto spread_at = [&](double t) {
       film.advance_to(t);
-      return runs::spread(film.state().centres(), film.state().depth, spread_depth);
+      const auto centres = film.state().centres();
+      return runs::spread({centres, film.state().depth}, spread_depth);
     };
     const double before = spread_at(time / std::numbers::sqrt2),
                  after = spread_at(time * std::numbers::sqrt2);

@@ -146,9 +146,10 @@ void measure(RunView& view, const Comparison& comparison) {
     const auto& last = view.run.profiles.back();
     if (spreads) {
       const double depth = view.gauges.spread_depth;
-      m.spread_at_half = read_value(runs::spread(last.coordinate, last.value, 0.5 * depth));
-      m.spread_at_twice = read_value(runs::spread(last.coordinate, last.value, 2.0 * depth));
-      m.centre_depth = read_value(runs::centre_depth(last.coordinate, last.value, depth));
+      const runs::DepthView profile = depth_of(last, view.run);
+      m.spread_at_half = read_value(runs::spread(profile, 0.5 * depth));
+      m.spread_at_twice = read_value(runs::spread(profile, 2.0 * depth));
+      m.centre_depth = read_value(runs::centre_depth(profile, depth));
     }
     m.end = std::max(m.end.value_or(last.time), last.time);
   }

@@ -42,9 +42,9 @@ class SlumpCase : public ApparatusCase {
   }
   double estimated_cells() const override {
     const double cell = scene().foam.cell, radius = std::ceil(cone_.domain_radius / cell);
-    // The usual four rows in place of the lowest.
+    const double cut = std::max(1.0, std::round(scene().foam.base_height.value_or(0.0) / cell));
     const double rows = std::ceil(cone_.domain_height / cell) +
-                        (scene().foam.base_rows == 0 ? usual_base_rows : scene().foam.base_rows) - 1;
+                        cut * ((scene().foam.base_rows == 0 ? usual_base_rows : scene().foam.base_rows) - 1);
     return rows * (is_quarter() ? radius * radius : radius);
   }
   bool steps_grow() const override { return true; }
@@ -102,7 +102,7 @@ class SlumpCase : public ApparatusCase {
         "coneCells           {};\n"
         "airCells            {};\n",
         scene().foam.cell, cone_.cone_height, cone_.domain_radius, cone_.domain_height, grid.side,
-        grid.cone_row_height, grid.base_rows, grid.cone_rows, grid.air_rows);
+        grid.base_height(), grid.base_rows, grid.cone_rows, grid.air_rows);
   }
 
   std::string wedge_mesh() const {
@@ -125,7 +125,7 @@ class SlumpCase : public ApparatusCase {
         "airCells            {};\n",
         scene().foam.wedge_angle, scene().foam.cell, cone_.cone_height, cone_.cone_radius_bottom,
         cone_.cone_height, cone_.cone_radius_bottom - cone_.cone_radius_top, cone_.domain_radius,
-        cone_.domain_height, half_width, -half_width, grid.rings, grid.cone_row_height, grid.base_rows,
+        cone_.domain_height, half_width, -half_width, grid.rings, grid.base_height(), grid.base_rows,
         grid.cone_rows, grid.air_rows);
   }
 

@@ -17,8 +17,9 @@ class Channel : public BodyGauge {
       : gauges_(of.scene.gauges),
         channel_(channel),
         factor_(of.pieces.whole_over_computed),
-        volume_(static_cast<std::size_t>(std::max(1.0, std::round(channel.length / of.cell))), 0.0),
-        spacing_(channel.length / static_cast<double>(volume_.size())) {}
+        spacing_(channel.length / std::max(1.0, std::round(channel.length / of.cell))),
+        depth_(runs::About::plane, spacing_, channel.length,
+               std::min(spacing_, of.cell / of.scene.mpm.particles_per_cell.front())) {}
 
   void begin(Solver& solver) override {
     front_of_mass_ = quantile_of_motion(
@@ -26,17 +27,14 @@ class Channel : public BodyGauge {
   }
 
   void add(const ParticleBatch& b) override {
-    const auto last = static_cast<double>(volume_.size() - 1);
     for (std::size_t i = 0; i < b.count; ++i)
-      volume_[static_cast<std::size_t>(std::clamp(b.position[0][i] / spacing_, 0.0, last))] += b.volume[i];
+      depth_.add(std::max(0.0, b.position[0][i]), factor_ * b.volume[i] / channel_.width);
   }
 
   BodyReading finish() override {
     BodyReading r;
-    for (std::size_t i = 0; i < volume_.size(); ++i) {
-      r.coordinate.push_back((static_cast<double>(i) + 0.5) * spacing_);
-      r.value.push_back(factor_ * volume_[i] / (spacing_ * channel_.width));
-    }
+    r.coordinate = depth_.centres();
+    r.value = depth_.depth();
     const double front =
         runs::front(r.coordinate, r.value, channel_.length, gauges_.front_depth) - channel_.begin;
     r.columns.add(runs::column::front, front);
@@ -51,8 +49,8 @@ class Channel : public BodyGauge {
   const scenes::Gauges& gauges_;
   scenes::ChannelGauge channel_;
   double factor_;
-  std::vector<double> volume_;  ///< m3 (plane: m2) over equal bins along x
-  double spacing_;              ///< m
+  double spacing_;  ///< m, of the strips along x
+  runs::DepthAccumulator depth_;
   double front_of_mass_ = 0.0;
 };
 

@@ -16,10 +16,12 @@ class Spread : public BodyGauge {
  public:
   Spread(const GaugeCase& of, const scenes::SpreadGauge& gauge)
       : gauges_(of.scene.gauges),
-        about_axis_(gauge.about_axis),
+        about_(gauge.about_axis ? runs::About::axis : runs::About::plane),
         vertical_(of.vertical),
         cell_(of.cell),
-        factor_(of.pieces.whole_over_computed) {}
+        grain_(of.cell / of.scene.mpm.particles_per_cell.front()),
+        // A plane column's depth is volume per length and unit width on either side of the middle.
+        factor_(gauge.about_axis ? of.pieces.whole_over_computed : 1.0) {}
 
   void begin(Solver& solver) override {
     of_mass_ = 2.0 * quantile_of_motion(solver, 0.995, [this](const ParticleBatch& b, std::size_t i) {
@@ -27,40 +29,23 @@ class Spread : public BodyGauge {
                  farthest_ = std::max(farthest_, radius);
                  return radius;
                });
-    if (about_axis_) {
-      rings_.emplace(cell_, farthest_ + 2.0 * cell_);
-    } else {
-      // A plane column's depth is volume per length and unit width on either side of the middle.
-      depth_.assign(static_cast<std::size_t>(farthest_ / cell_) + 2, 0.0);
-    }
+    depth_.emplace(about_, cell_, farthest_ + 2.0 * cell_, grain_);
   }
 
   void add(const ParticleBatch& b) override {
-    for (std::size_t i = 0; i < b.count; ++i) {
-      const double radius = radius_of(b, i);
-      if (about_axis_)
-        rings_->add(radius, factor_ * b.volume[i]);
-      else
-        depth_[static_cast<std::size_t>(radius / cell_)] += b.volume[i] / cell_;
-    }
+    for (std::size_t i = 0; i < b.count; ++i) depth_->add(radius_of(b, i), factor_ * b.volume[i]);
   }
 
   BodyReading finish() override {
     BodyReading r;
     r.farthest = farthest_;
-    if (about_axis_) {
-      const runs::RadialDepth depth = rings_->depth();
-      r.coordinate = depth.centres();
-      r.value = depth.depth;
-    } else {
-      r.value = depth_;
-      for (std::size_t i = 0; i < depth_.size(); ++i)
-        r.coordinate.push_back((static_cast<double>(i) + 0.5) * cell_);
-    }
-    r.columns.add(runs::spread_columns(r.coordinate, r.value, gauges_));
+    r.coordinate = depth_->centres();
+    r.value = depth_->depth();
+    const runs::DepthView profile{r.coordinate, r.value, about_};
+    r.columns.add(runs::spread_columns(profile, gauges_));
     r.columns.add(runs::column::spread_of_mass, of_mass_);
-    r.columns.add(runs::column::height, runs::centre_depth(r.coordinate, r.value, gauges_.spread_depth));
-    const double spread = runs::spread(r.coordinate, r.value, gauges_.spread_depth);
+    r.columns.add(runs::column::height, runs::centre_depth(profile, gauges_.spread_depth));
+    const double spread = runs::spread(profile, gauges_.spread_depth);
     r.main = 1e3 * spread;
     r.words = runs::shown_length("spread", spread, gauges_.spread_depth);
     return r;
@@ -72,12 +57,11 @@ class Spread : public BodyGauge {
   }
 
   const scenes::Gauges& gauges_;
-  bool about_axis_;
+  runs::About about_;
   std::size_t vertical_;
-  double cell_, factor_;
+  double cell_, grain_, factor_;
   double farthest_ = 0.0, of_mass_ = 0.0;
-  std::optional<runs::RadialDepthAccumulator> rings_;
-  std::vector<double> depth_;
+  std::optional<runs::DepthAccumulator> depth_;
 };
 
 }  // namespace

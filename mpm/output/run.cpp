@@ -399,7 +399,7 @@ class MpmRun {
     std::optional<double> depth_cells;
     if (pieces_.profile.radial())
       depth_cells =
-          runs::centre_depth(measures_.body.coordinate, measures_.body.value, scene_.gauges.spread_depth) /
+          runs::centre_depth({measures_.body.coordinate, measures_.body.value}, scene_.gauges.spread_depth) /
           settings_.cell;
     return runs::with_resolution(noise_verdict(),
                                  resolution_.fault(pieces_.passage / settings_.cell, depth_cells));
