@@ -9,6 +9,7 @@
 #include "compare/apparatus/apparatus.h"
 #include "compare/fields/section.h"
 #include "compare/measures/gauges.h"
+#include "compare/measures/stop_rules.h"
 #include "compare/run_table.h"
 #include "compare/run_view.h"
 #include "compare/words.h"
@@ -356,6 +357,42 @@ double stop_base(const Comparison& comparison, const RunView& view) {
   return view.measures.overshoot_reference.value_or(view.measures.gauge_end.value_or(0.0));
 }
 
+/// What each rule by which people stop would have read of each fluid, less the arrested gauge.
+std::optional<Table> rules_table(const Comparison& comparison) {
+  if (!comparison.apparatus->grows()) return std::nullopt;
+  const double scale = scale_of(comparison);
+  const std::string gauge = gauge_name(comparison), unit = unit_of(comparison);
+  Table table{"stop-rules", "what rules to stop by would have read",
+              "Fluids never rest, so that runs are cut by a rule. Error: the " + gauge +
+                  " when the rule cuts, less the arrested one. A dash: it does not cut this run."};
+  table.columns = {{"Run", "", {}, true},
+                   {"Rule", "", {}, true},
+                   {"Cuts at", "s", significant(3)},
+                   {capitalised(gauge), unit, lengths(comparison)},
+                   {"Error", unit, signed_lengths(comparison)},
+                   {"Error of the arrested " + gauge, "%", fixed(1)}};
+  for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+    const RunView& view = comparison.runs[i];
+    if (view.exact || !view.fluid || !view.measures.overshoot_reference) continue;
+    const double arrested = *view.measures.overshoot_reference;
+    for (const RuleStop& stop : stops_by_rules(view, comparison.thresholds)) {
+      Table::Row row;
+      row.entry = static_cast<int>(i);
+      row.cells = {view.label, stop.rule};
+      if (stop.time) {
+        const double error = *stop.gauge - arrested;
+        row.cells.insert(row.cells.end(),
+                         {*stop.time, scale * *stop.gauge, scale * error, 100.0 * error / arrested});
+      } else {
+        row.cells.resize(table.columns.size());
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  if (table.rows.empty()) return std::nullopt;
+  return table;
+}
+
 std::optional<Chapter> stops_chapter(const Comparison& comparison) {
   if (comparison.stops.size() < 2) return std::nullopt;
   const bool depth_profiles = comparison.apparatus->has_depth();
@@ -404,10 +441,12 @@ std::optional<Chapter> stops_chapter(const Comparison& comparison) {
         {{"Range of the arrested " + gauge, "%", fixed(1)}, [&comparison, range](const RunView& view) {
            return Table::Cell(100.0 * range(view) / stop_base(comparison, view));
          }});
-  return Chapter{"arbitrary-stops",
-                 "What an arbitrary stop would have said",
-                 {plot, table_of_runs(comparison, "stop-readings", "readings over all arbitrary stops",
-                                      columns, measured)}};
+  Chapter chapter{"arbitrary-stops",
+                  "What an arbitrary stop would have said",
+                  {plot, table_of_runs(comparison, "stop-readings", "readings over all arbitrary stops",
+                                       columns, measured)}};
+  if (auto rules = rules_table(comparison)) chapter.blocks.push_back(std::move(*rules));
+  return chapter;
 }
 
 std::string difference_word(const std::string& kind) {

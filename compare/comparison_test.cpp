@@ -10,6 +10,7 @@
 #include "compare/comparison_page.h"
 #include "compare/exact/exact_run.h"
 #include "compare/fields/states.h"
+#include "compare/measures/stop_rules.h"
 #include "compare/synthetic_runs.h"
 #include "compare/words.h"
 #include "runs/temporary_folder.h"
@@ -110,6 +111,29 @@ TEST_F(ComparisonTest, MeasuresWhatTheFormulaSays) {
   const auto at = [&](double depth) { return *evp.gauge_end * (1.0 - std::pow(depth / 0.0396, 2)); };
   EXPECT_NEAR(*evp.spread_at_half, at(0.0015), 2e-4);
   EXPECT_NEAR(*evp.spread_at_twice, at(0.006), 2e-4);
+}
+
+TEST_F(ComparisonTest, RulesToStopByCutWhereTheFormulaSaysAndReadTheGaugeThen) {
+  write_arrested();
+  const synthetic::Slump fluid = creeping(2e-4);
+  synthetic::write(fluid, folder / "papanastasiou");
+  const Comparison comparison = compared();
+  const RunView& view = run(comparison, "MPM papanastasiou");
+  const auto stops = stops_by_rules(view, comparison.thresholds);
+  const auto stop = [&](const std::string& rule) {
+    for (const RuleStop& s : stops)
+      if (s.rule == rule) return s;
+    ADD_FAILURE() << "no rule " << rule;
+    return RuleStop{};
+  };
+  EXPECT_NEAR(*stop("cut at 20 s").gauge, 2.0 * fluid.radius_at(20.0), 2e-4);
+  // 20/(1 + t/0.4)^3 + 0.004 falls through 0.1 and 0.01 1/s at 1.97 and 5.57 s.
+  EXPECT_NEAR(*stop("shear rate below 0.1 1/s").time, 1.97, 0.051);
+  EXPECT_NEAR(*stop("shear rate below 0.01 1/s").time, 5.57, 0.051);
+  // 4 (0.288 - 0.1)/0.4/(1 + t/0.4)^3 + 2e-4 falls through 1 mm/s at 4.92 s, and never through 0.1.
+  EXPECT_NEAR(*stop("growth below 1 mm/s").time, 4.92, 0.3);
+  EXPECT_FALSE(stop("growth below 0.1 mm/s").time);
+  EXPECT_FALSE(stop("mean speed below 0.1 mm/s").time) << "the run does not tell its energy";
 }
 
 TEST_F(ComparisonTest, SplitsLawFromSolver) {

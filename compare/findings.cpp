@@ -64,10 +64,15 @@ std::string arrest_sentence(const Comparison& comparison, const RunView& view) {
                         words::spread(finest * std::max(1.0, std::ceil(*m.growth_to_come / finest)),
                                       comparison.grain))
           : "";
+  const auto cells = number(view.run.info, "/resolution/cells_at_end");
+  const std::string limited =
+      cells && *cells < 1.0
+          ? fmt::format(", limited by the cell (its sheared layer is {:.1g} cells thick by then),", *cells)
+          : "";
   if (view.held)
-    return fmt::format("{} comes to rest{} with a {} of {}{}{}.", view.label,
-                       m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "", gauge,
-                       end_of(comparison, view), more, doubt);
+    return fmt::format("{} comes to rest{}{} with a {} of {}{}{}.", view.label,
+                       m.rest_declared ? fmt::format(" after {}", words::time(*m.rest_declared)) : "",
+                       limited, gauge, end_of(comparison, view), more, doubt);
   const auto rest = m.rest_by_shear_rate ? m.rest_by_shear_rate : m.rest_by_spread_rate;
   if (m.cause == Cause::at_rest && rest)
     return fmt::format("{} has all but stopped by {} and ends with a {} of {}{}.", view.label,

@@ -443,6 +443,8 @@ class CaseRun {
     if (status_ == Status::interrupted && reason_.empty())
       reason_ = fmt::format("interrupted at {:.4g} s; go on with: {}", time(),
                             runs::command_to_resume("foam", options_.directory));
+    if (status_ == Status::at_rest && reason_.empty() && sampler_)
+      reason_ = sampler_->resolution().limit_of_rest();
     write_info(wall);
     if (status_ == Status::failed)
       writer_.fail({fault_, reason_}, verdict());

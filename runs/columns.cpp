@@ -22,6 +22,7 @@ std::span<const Column* const> every_column() {
                                      &column::start_height,
                                      &column::end_height,
                                      &column::discharged,
+                                     &column::suction,
                                      &column::thinnest_sight,
                                      &column::strand_width,
                                      &column::strand_height,

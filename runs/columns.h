@@ -112,6 +112,8 @@ inline constexpr Column end_height = {.name = "end_height_mm",
                                       .threshold = [](const scenes::Gauges& g) { return g.end_length; }};
 inline constexpr Column discharged = {
     .name = "discharged_fraction", .unit = "", .meaning = "share of the material that has left the outlet"};
+inline constexpr Column suction = {
+    .name = "suction_max_Pa", .unit = "Pa", .meaning = "the largest tension in a funnel's neck so far"};
 inline constexpr Column thinnest_sight = {
     .name = "thinnest_sight_mm",
     .unit = "mm",

@@ -421,6 +421,16 @@ std::optional<double> cut_csv_back(const fs::path& path, double time) {
   return last;
 }
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
 std::string csv_header(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ","));
 }

@@ -59,6 +59,9 @@ std::string header_of_csv(const std::filesystem::path&);
 /// @return the last row's first number, where there is one
 std::optional<double> cut_csv_back(const std::filesystem::path&, double time);
 
+/// A text as a cell of a CSV file, in quotes where it needs them.
+std::string csv_field(const std::string& text);
+
 /// Names parted by commas, as a header has them.
 std::string csv_header(const std::vector<std::string>& names);
 

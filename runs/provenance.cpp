@@ -53,7 +53,7 @@ double seconds_of(int who) {
 nlohmann::ordered_json provenance() {
   return {
     {"flowrest", FLOWREST_VERSION}, {"git_hash", FLOWREST_GIT_HASH}, {"git_dirty", FLOWREST_GIT_DIRTY},
-        {"build", FLOWREST_BUILD_TYPE},
+        {"sources", FLOWREST_SOURCES}, {"build", FLOWREST_BUILD_TYPE},
 #if defined(__clang__)
         {"compiler", "Clang " __clang_version__},
 #elif defined(__GNUC__)

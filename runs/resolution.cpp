@@ -64,13 +64,21 @@ std::string Resolution::fault(double passage_cells, std::optional<double> depth_
   return fmt::format("{}", fmt::join(faults, ", "));
 }
 
+std::string Resolution::limit_of_rest() const {
+  if (moments_.empty() || moments_.back().layer.cells >= 1.0) return "";
+  const ShearedLayer& layer = moments_.back().layer;
+  return fmt::format("limited by the cell: the sheared layer of {:.2g} mm is {:.2g} cells thick",
+                     1e3 * layer.thickness, layer.cells);
+}
+
 nlohmann::ordered_json Resolution::json() const {
   const auto moment = judged();
   if (!moment) return nullptr;
   return {{"sheared_layer_m", moment->layer.thickness},
           {"cells", moment->layer.cells},
           {"wanted", cells_wanted},
-          {"at_s", moment->time}};
+          {"at_s", moment->time},
+          {"cells_at_end", moments_.back().layer.cells}};
 }
 
 }  // namespace flowrest::runs

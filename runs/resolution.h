@@ -44,6 +44,9 @@ class Resolution {
   /// narrowest passage (infinite where there is none), `depth_cells` over a slump's depth at its centre, where
   /// that is known.
   std::string fault(double passage_cells, std::optional<double> depth_cells) const;
+  /// Why a run that comes to rest now may rest for its grid's sake: the layer in which it was last sheared is
+  /// thinner than a cell. Empty where it is not.
+  std::string limit_of_rest() const;
   /// run.json's `resolution`; null where nothing was sheared along a wall.
   nlohmann::ordered_json json() const;
 

@@ -131,9 +131,12 @@ TEST(Resolution, IsJudgedWhereHalfOfTheStrainIsDoneWithFewerCells) {
   EXPECT_EQ(slump.fault(2.9, 4.0), "2.9 cells across the narrowest passage");
   EXPECT_THAT(slump.fault(open, 2.9), StartsWith("2.9 cells over the depth"));
   EXPECT_NEAR(slump.json()["sheared_layer_m"].get<double>(), 0.058, 1e-15);
+  EXPECT_EQ(slump.json()["cells_at_end"].get<double>(), 0.5);
+  EXPECT_EQ(slump.limit_of_rest(), "limited by the cell: the sheared layer of 5 mm is 0.5 cells thick");
   const auto creep = of_moments({{60, 6, 10}, {40, 4, 30}});
   EXPECT_EQ(creep.fault(open, std::nullopt),
             "4.0 cells over the sheared layer of 40 mm at 0.2 s, where 5 are wanted");
+  EXPECT_EQ(creep.limit_of_rest(), "") << "its last layer has four cells";
   EXPECT_FALSE(of_moments({{0, 0, 0}, {0, 0, 0}}).judged());
   EXPECT_TRUE(Resolution().json().is_null());
 }

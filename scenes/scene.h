@@ -146,7 +146,8 @@ struct Foam {
   /// Rows into which a slump's lowest row of cells is cut; 0: 4 with the plug-in (they need air that rises),
   /// else 1.
   int base_rows = 0;
-  /// m, how far up rows are as thin as the lowest; one row of foam.cell unless given.
+  /// m, how far up rows are as thin as the lowest. Unless given: with the plug-in and about an axis as deep as
+  /// the deposit, else one row.
   std::optional<double> base_height;
   /// s, in which air under concrete rises, 0: never; 0.1 with the plug-in, which does it.
   std::optional<double> air_rise_time;
@@ -155,7 +156,7 @@ struct Foam {
   FoamMixing mixing = FoamMixing::arithmetic;
   double full_at = 0.5;  ///< of `saturating`: the fraction of concrete from which its stress counts in full
   FoamWetting wetting = FoamWetting::geometric;
-  FoamFaces face_weight = FoamFaces::harmonic;
+  FoamFaces face_weight = FoamFaces::linear;
   FoamStrainRate strain_rate = FoamStrainRate::concrete;
   bool operator==(const Foam&) const = default;
 };

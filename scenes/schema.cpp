@@ -311,7 +311,7 @@ std::vector<Key> foam_keys() {
           "rows of cells into which the lowest row of a slump's mesh is cut; 0: 4 with the plug-in, else 1"),
       number("foam.base_height", "m", above(0.0, largest_length), AT(draft.scene.foam.base_height),
              "height up to which a slump's rows are cut like the lowest")
-          .otherwise("foam.cell"),
+          .otherwise("the deposit's depth with the plug-in about an axis, else foam.cell"),
       number("foam.air_rise_time", "s", from(0.0, largest_time), AT(draft.scene.foam.air_rise_time),
              "time in which air that a slump has rolled over rises through it (plug-in); 0: it stays")
           .otherwise("0.1 with the plug-in, else 0"),

@@ -14,6 +14,7 @@
 #include "scenes/text.h"
 #include "studies/accuracy.h"
 #include "studies/cards/card.h"
+#include "studies/ledger.h"
 #include "studies/results.h"
 #include "studies/validation/validation.h"
 #include "studies/verification/verification.h"
@@ -173,7 +174,8 @@ std::string names_of(const std::vector<verification::Case>& cases) {
 }
 
 /// @return the exit code
-int run_verification(const fs::path& folder, const verification::Options& options) {
+int run_verification(const fs::path& folder, const verification::Options& options,
+                     const ledger::Asked& asked) {
   const auto findings = verification::verify(verification::all_cases(), folder, options);
   if (findings.empty())
     throw scenes::SceneError(fmt::format("no case is named so; allowed: a part of the name of one:\n{}",
@@ -191,8 +193,31 @@ int run_verification(const fs::path& folder, const verification::Options& option
     all = all && (f.passed || !f.judged);
   }
   fmt::print("\nThe verification: {}\n", fs::absolute(folder / "index.html").lexically_normal().string());
+  all = ledger::enter(asked, ledger::entries_of(findings)) && all;
   constexpr int numerics_failed = 3;
   return all ? 0 : numerics_failed;
+}
+
+void add_ledger(CLI::App& app) {
+  struct Arguments {
+    std::string file = "docs/measured/ledger.csv", output = "out/ledger";
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("ledger", "A page of the accuracy ledger: each quantity, commit by commit");
+  command->add_option("file", arguments->file, "The ledger")->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "Folder of the page")->capture_default_str();
+  command->callback([arguments] {
+    const auto entries = ledger::read(arguments->file);
+    if (entries.empty())
+      throw scenes::SceneError(arguments->file +
+                               ": there are no rows; allowed: a ledger, such as `flowrest verify "
+                               "--ledger FILE` writes");
+    const runs::FolderLock lock(arguments->output);
+    const fs::path page = fs::path(arguments->output) / "index.html";
+    runs::write_atomically(page, report::render(ledger::page_of(entries)));
+    fmt::print("The ledger: {}\n", fs::absolute(page).lexically_normal().string());
+  });
 }
 
 void add_verify(CLI::App& app) {
@@ -206,9 +231,10 @@ void add_verify(CLI::App& app) {
   command->add_option("-j,--jobs", options->jobs, "Computations at once (as many as there are cores)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--quiet", options->quiet, "Print no progress");
-  command->callback([options, output] {
+  const auto asked = ledger::add_options(*command);
+  command->callback([options, output, asked] {
     const runs::FolderLock lock(*output);
-    const int code = run_verification(*output, *options);
+    const int code = run_verification(*output, *options, *asked);
     if (code != 0) throw CLI::RuntimeError(code);
   });
 }
@@ -253,6 +279,7 @@ void add_commands(CLI::App& app) {
   add_verify(app);
   validation::add_command(app);
   add_judge(app);
+  add_ledger(app);
   add_job(app);
 }
 

@@ -2,7 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compare/exact/funnel.h"
+#include "compare/exact/solution_run.h"
 #include "compare/findings.h"
+#include "runs/columns.h"
 
 namespace flowrest::compare {
 
@@ -65,6 +72,45 @@ class VFunnelReport : public ApparatusReport {
     tell(comparison, Topic::apart, events_apart(comparison, "light_s", "light is seen"));
     tell(comparison, Topic::context, flocculation_sentence(comparison));
     comparison.fair = fair_runs;
+  }
+  /// It slides, so that neither its yield stress nor its structure count.
+  std::vector<exact::ExactRun> write_exact_runs(const scenes::Scene& scene,
+                                                const std::filesystem::path& directory,
+                                                std::optional<double> flocculation,
+                                                runs::Replace replace) const override {
+    if (flocculation)
+      exact::refuse(scene, "--flocculation is given, and a plug that slides does not ask for it");
+    if (scene.base.law == scenes::Wall::no_slip)
+      exact::refuse(scene, "walls that hold shear it; allowed: slip, or a friction");
+    const auto& v = scene.v_funnel();
+    const exact::Funnel funnel{v.height(), v.neck_height, v.depth,
+                               [v](double height) { return v.width_at(height); }};
+    const double friction = scene.base.law == scenes::Wall::friction ? scene.base.friction : 0.0;
+    std::vector<exact::ExactRun> made;
+    for (const bool seals : {false, true}) {
+      const auto folder = directory / (seals ? "neck-seals" : "neck-lets-go");
+      const std::string label = seals ? "sliding plug, neck seals" : "sliding plug, neck lets go";
+      runs::RunWriter writer = exact::open_run(folder, scene, std::nullopt, replace);
+      writer.info()["label"] = label;
+      writer.info()["source"] =
+          "unsteady Bernoulli flow with Coulomb friction on the walls, without viscosity";
+      const exact::FunnelFlow flow(funnel, scene.material.density, scene.forces.gravity, friction,
+                                   seals ? exact::Neck::seals : exact::Neck::lets_go);
+      double suction = 0.0, nearly_all = std::numeric_limits<double>::quiet_NaN();
+      constexpr double most = 0.9;
+      for (const auto& state : flow.run(scene.time.end, scene.output.history_interval)) {
+        suction = std::max(suction, state.suction);
+        if (std::isnan(nearly_all) && state.discharged >= most) nearly_all = state.time;
+        writer.history(runs::Row()
+                           .add(runs::column::time, state.time)
+                           .add(runs::column::discharged, state.discharged)
+                           .add(runs::column::suction, suction));
+      }
+      writer.finish(runs::Status::end_time, "", "sound");
+      made.push_back({folder, fmt::format("{}: 90 % has run out after {:.2f} s; suction at most {:.0f} Pa",
+                                          label, nearly_all, suction)});
+    }
+    return made;
   }
   std::string stop_question() const override { return "When is light seen, and does it run empty?"; }
 

@@ -20,6 +20,19 @@ namespace {
 /// Rows into which the lowest is cut with the plug-in.
 constexpr int usual_base_rows = 4;
 
+/// Height of the layer of thin rows with the plug-in, m: what the deposit is deep once it is slow. At the
+/// surface, concrete's stress is shared between part-filled cells; the thinner they are the less that says. The
+/// leading-order arrested slump, h = sqrt(2 tau0 (R - r) / (rho g)) (Yu et al. 2026, Eq. 51), is about a third
+/// shallower in the middle than the slump is after a second.
+double usual_base_height(const scenes::Scene& scene, const scenes::Slump& cone) {
+  constexpr double deeper = 1.35;
+  const double weight = scene.material.density * scene.forces.gravity;
+  if (!(scene.material.yield_stress > 0.0) || !(weight > 0.0)) return 0.0;
+  const double slope = 2.0 * scene.material.yield_stress / weight;  // of h^2
+  const double radius = std::pow(15.0 * cone.volume() / (8.0 * std::numbers::pi * std::sqrt(slope)), 0.4);
+  return std::min(deeper * std::sqrt(slope * radius), cone.cone_height);
+}
+
 /// A slump as a wedge about the vertical axis, or as a quarter.
 class SlumpCase : public ApparatusCase {
  public:
@@ -42,7 +55,9 @@ class SlumpCase : public ApparatusCase {
   }
   double estimated_cells() const override {
     const double cell = scene().foam.cell, radius = std::ceil(cone_.domain_radius / cell);
-    const double cut = std::max(1.0, std::round(scene().foam.base_height.value_or(0.0) / cell));
+    const double thin =
+        scene().foam.base_height.value_or(is_quarter() ? 0.0 : usual_base_height(scene(), cone_));
+    const double cut = std::max(1.0, std::round(thin / cell));
     const double rows = std::ceil(cone_.domain_height / cell) +
                         cut * ((scene().foam.base_rows == 0 ? usual_base_rows : scene().foam.base_rows) - 1);
     return rows * (is_quarter() ? radius * radius : radius);
@@ -78,6 +93,9 @@ class SlumpCase : public ApparatusCase {
   void settle(scenes::Foam& foam, bool plug_in) const override {
     constexpr double rise_time = 0.1;  // s
     if (foam.base_rows == 0) foam.base_rows = plug_in ? usual_base_rows : 1;
+    if (!foam.base_height)
+      foam.base_height =
+          std::max(foam.cell, plug_in && !is_quarter() ? usual_base_height(scene(), cone_) : 0.0);
     if (!foam.air_rise_time) foam.air_rise_time = plug_in ? rise_time : 0.0;
   }
 

@@ -148,7 +148,7 @@ class MpmRun {
       if (at_row) rest_.add(state_.time, measures_.overstress_p99);
       const bool rests = at_row && rest_.at_rest();
       if (rests || state_.time >= end_) checkpoint();  // under the settings that it has now
-      if (rests) return stop(runs::Status::at_rest, "");
+      if (rests) return stop(runs::Status::at_rest, resolution_.limit_of_rest());
     }
     while (state_.time < end_) {
       if (options_.interrupted())
@@ -158,7 +158,7 @@ class MpmRun {
       if (due(state_.histories, scene_.output.history_interval) || state_.time >= end_) {
         gauge();
         output();
-        if (rest_.at_rest()) return stop(runs::Status::at_rest, "");
+        if (rest_.at_rest()) return stop(runs::Status::at_rest, resolution_.limit_of_rest());
       }
     }
     return stop(runs::Status::end_time, "");

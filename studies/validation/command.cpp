@@ -7,6 +7,7 @@
 #include "compare/words.h"
 #include "runs/run_directory.h"
 #include "scenes/text.h"
+#include "studies/ledger.h"
 #include "studies/validation/validation.h"
 
 namespace flowrest::studies::validation {
@@ -20,6 +21,7 @@ struct Arguments {
   std::string model, solver, output = "out/validation";
   WorkflowOptions workflow;
   bool list = false, report_only = false, json = false;
+  std::shared_ptr<ledger::Asked> ledger = {};
 };
 
 /// What would be run, and for how long.
@@ -106,9 +108,10 @@ void run(Arguments& arguments) {
                                               {"verdicts", verdicts}}
                            .dump());
   }
+  const bool as_good = ledger::enter(*arguments.ledger, ledger::entries_of(validation));
   if (code == 130) fmt::print(stderr, "Interrupted; the same command goes on with it.\n");
   constexpr int numerics_failed = 3;
-  if (code == 0 && has_failure(validation)) code = numerics_failed;
+  if (code == 0 && (has_failure(validation) || !as_good)) code = numerics_failed;
   if (code != 0) throw CLI::RuntimeError(code);
 }
 
@@ -150,6 +153,7 @@ void add_command(CLI::App& app) {
       ->excludes(report_only)
       ->excludes(json);
   command->add_flag("--quiet", arguments->workflow.quiet, "Print no progress");
+  arguments->ledger = ledger::add_options(*command);
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -73,21 +73,10 @@ Json run_json(const Found& run) {
           {"made_by", run.version}};
 }
 
-/// A field of a CSV file, quoted where it has to be.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 std::string csv_cell(const Json& json) {
   if (json.is_number()) return fmt::format("{:.17g}", json.get<double>());
   if (json.is_boolean()) return json.get<bool>() ? "yes" : "no";
-  return json.is_string() ? field(json.get<std::string>()) : "";
+  return json.is_string() ? runs::csv_field(json.get<std::string>()) : "";
 }
 
 }  // namespace

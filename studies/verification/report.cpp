@@ -58,16 +58,6 @@ Json finding_json(const Finding& f) {
           {"verdict", f.verdict}};
 }
 
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 Table::Cell cell(const std::optional<double>& value) {
   if (!value) return std::monostate{};
   return *value;
@@ -132,10 +122,10 @@ std::string csv_row(const Finding& f, std::size_t i) {
   const bool measured = g.measured.has_value(), ordered = i > 0 && i - 1 < f.orders.size() && f.orders[i - 1];
   const Measured m = g.measured.value_or(Measured{});
   const double order = ordered ? f.orders[i - 1].value_or(0.0) : 0.0;
-  return fmt::format("{},{},{},{},{:.17g},{},{},{},{:.3g},{},{}\n", field(f.of.name), field(f.of.variant),
-                     field(f.of.norm), field(f.of.refined), g.grid, number(measured, m.error),
-                     number(measured, m.value), number(ordered, order), g.cpu, field(f.verdict),
-                     field(measured ? "" : g.trouble));
+  return fmt::format("{},{},{},{},{:.17g},{},{},{},{:.3g},{},{}\n", runs::csv_field(f.of.name),
+                     runs::csv_field(f.of.variant), runs::csv_field(f.of.norm), runs::csv_field(f.of.refined),
+                     g.grid, number(measured, m.error), number(measured, m.value), number(ordered, order),
+                     g.cpu, runs::csv_field(f.verdict), runs::csv_field(measured ? "" : g.trouble));
 }
 
 }  // namespace
