@@ -66,7 +66,7 @@ TEST_F(OpenFoam, SlumpsForHalfASecond) {
   const auto& spread = result.history.at("spread_mm");
   const auto& energy = result.history.at("kinetic_energy_J");
   EXPECT_NEAR(result.history.at("height_mm").front(), 300.0, 1e-6);
-  EXPECT_NEAR(spread.back(), 402.7, 15.0);  // finite elements, elements/; 20 mm cells, so only a guard
+  EXPECT_NEAR(spread.back(), 402.7, 25.0);  // finite elements, elements/; 20 mm cells, so only a guard
   EXPECT_GT(*std::max_element(energy.begin(), energy.end()), 20.0 * energy.back());
   EXPECT_GT(result.history.at("initial_residual_U").back(), 0.0);
 

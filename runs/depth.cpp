@@ -96,10 +96,11 @@ double centre_depth(const DepthView& view, double spread_depth) {
   if (count == 0) return nothing;
   if (count == 1) return depth[0];
   // Without a spread there is no window, and the innermost two rings are taken.
-  const double window = 0.25 * 0.5 * spread(view, spread_depth);
+  const double edge = 0.5 * spread(view, spread_depth), window = 0.25 * edge, widest = 0.4 * edge;
+  constexpr std::size_t wanted = 4;  // coarse rings are each held by few particles
   // Least squares of c + s r, rings counting by their area.
   double area = 0.0, first = 0.0, second = 0.0, value = 0.0, moment = 0.0;
-  for (std::size_t i = 0; i < count && (i < 2 || radius[i] <= window); ++i) {
+  for (std::size_t i = 0; i < count && (i < 2 || radius[i] <= (i < wanted ? widest : window)); ++i) {
     const double r = radius[i];
     area += r;
     first += r * r;

@@ -50,7 +50,8 @@ class DepthAccumulator {
 double spread(const DepthView&, double threshold);
 
 /// Depth at the centre, m: the line fitted by least squares to the depths within a quarter of the radius of
-/// the spread at `spread_depth`, two rings at least, each counting by its area, taken at r = 0; nothing
+/// the spread at `spread_depth`, two rings at least, and four where they lie within 0.4 of it, each counting by
+/// its area, taken at r = 0; nothing
 /// without rings. An arrested profile falls linearly from its centre; the innermost ring alone holds so few
 /// particles that it says more of where they were put.
 double centre_depth(const DepthView&, double spread_depth);

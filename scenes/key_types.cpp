@@ -19,19 +19,6 @@ std::string must_be(const std::string& what, const Value& value) {
 
 // ---- reading one value: each returns what is wrong, or nothing
 
-std::string read_number(const Value& value, const Range& range, double& number) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value.content)) {
-    number = static_cast<double>(*integer);
-  } else if (const auto* given = std::get_if<double>(&value.content)) {
-    number = *given;
-  } else {
-    return must_be("a number", value);
-  }
-  if (!std::isfinite(number)) return fmt::format("is {}; allowed: finite numbers, {}", number, range.text());
-  if (!range.holds(number)) return fmt::format("is {:g}; allowed: {}", number, range.text());
-  return {};
-}
-
 std::string read_integer(const Value& value, std::int64_t low, std::int64_t high, std::int64_t& integer) {
   const auto* given = std::get_if<std::int64_t>(&value.content);
   if (!given) return must_be("an integer", value);
@@ -170,6 +157,19 @@ Key any_integer(std::string path, std::int64_t low, std::int64_t high, Access<In
 
 }  // namespace
 
+std::string read_number(const Value& value, const Range& range, double& number) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value.content)) {
+    number = static_cast<double>(*integer);
+  } else if (const auto* given = std::get_if<double>(&value.content)) {
+    number = *given;
+  } else {
+    return must_be("a number", value);
+  }
+  if (!std::isfinite(number)) return fmt::format("is {}; allowed: finite numbers, {}", number, range.text());
+  if (!range.holds(number)) return fmt::format("is {:g}; allowed: {}", number, range.text());
+  return {};
+}
+
 std::string unknown_choice(const Value& value, const std::vector<std::string>& allowed) {
   const auto* name = std::get_if<std::string>(&value.content);
   if (!name) return must_be("a string", value) + "; allowed: " + joined(allowed);
@@ -264,7 +264,7 @@ Key steps(std::string path, std::string unit, Access<std::vector<std::pair<doubl
   Key key = plain_key(std::move(path), std::move(unit), std::move(meaning),
                       "number, or array of [time, force] with ascending times from 0");
   key.read = [=](const Value& value, Draft& draft) { return read_steps(value, at(draft)); };
-  key.write = [=](Draft& draft) { return Json(at(draft)); };
+  key.write = [=](Draft& draft) { return at(draft).empty() ? Json() : Json(at(draft)); };
   return key;
 }
 

@@ -44,6 +44,9 @@ Key wall(std::string path, Access<WallContact>, std::string meaning);
 /// A wall that may be left to another's law.
 Key wall(std::string path, Access<std::optional<WallContact>>, std::string meaning);
 
+/// Reads a number in a range. @return what is wrong with it; empty where nothing is
+std::string read_number(const Value&, const Range&, double& number);
+
 /// A key without a type.
 Key plain_key(std::string path, std::string unit, std::string meaning, std::string takes);
 

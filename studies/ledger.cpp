@@ -277,7 +277,10 @@ std::shared_ptr<Asked> add_options(CLI::App& command) {
   auto asked = std::make_shared<Asked>();
   auto* file = command.add_option(
       "--ledger", asked->file, "An accuracy ledger: say what got worse since its last rows, and add these");
-  command.add_flag("--compare-only", asked->compare_only, "Add no rows to the ledger")->needs(file);
+  command
+      .add_flag("--compare-only", asked->compare_only,
+                "Add no rows to the ledger, and do not fail for what got worse")
+      ->needs(file);
   return asked;
 }
 
@@ -292,7 +295,8 @@ bool enter(const Asked& asked, const std::vector<Entry>& now) {
                change.before.commit, change.now.key(), change.now.error, change.before.error, change.bound);
   }
   fmt::print("Of {} rows {} stand in {}; {} got worse\n", now.size(), known, asked.file, worse);
-  if (!asked.compare_only) fmt::print("{} rows added\n", append(asked.file, now));
+  if (asked.compare_only) return true;
+  fmt::print("{} rows added\n", append(asked.file, now));
   return worse == 0;
 }
 

@@ -65,7 +65,7 @@ struct Asked {
 std::shared_ptr<Asked> add_options(CLI::App&);
 
 /// Prints what got worse since it was last entered; then adds the rows, unless asked only to compare.
-/// @return whether nothing got worse
+/// @return whether nothing got worse; asked only to compare, it only tells
 bool enter(const Asked&, const std::vector<Entry>& now);
 
 /// Each quantity over commits, with bias and scatter of each quantity over all its settings.

@@ -1,4 +1,5 @@
 // Printed strands: what comes out of the nozzle is there, and where it should be.
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -72,6 +73,28 @@ TEST_F(Print, AStrandHasTheSectionThatIsFed) {
   EXPECT_LT(run.history.at("base_width_mm").back(), run.history.at("strand_width_mm").back() + 0.1);
   EXPECT_TRUE(std::isnan(run.history.at("strand_width_mm").front()));
   EXPECT_EQ(run.history.at("nozzle_push_N").back(), 0.0) << "it has gone";
+}
+
+/// Along both legs of the corner lies what was fed for them, and all of it is there.
+TEST_F(Print, ACornerIsPrintedAlongBothItsLegs) {
+  const auto run = run_and_read(scenes::load_scene(
+      "printing-corner",
+      {{"mpm.cell=0.005", "mpm.precision=double", "output.history_interval=0.1", "time.end=2.6",
+        "process.path=[[0,0.05,0,0.0125],[1.2,0.086,0,0.0125],[2.4,0.086,0.036,0.0125]]"},
+       {}}));
+  const double fed = bore_area * extrusion * 2.4;
+  EXPECT_NEAR(run.history.at("volume_at_rest_m3").back(), fed, 1e-9 * fed);
+  EXPECT_TRUE(std::isnan(run.history.at("strand_width_mm").back()));
+  // The corner is symmetric but for time: by then half of the weight lies along either leg.
+  std::array<double, 2> beyond{};
+  const auto checkpoint = read_checkpoint(folder / "run");
+  ASSERT_TRUE(checkpoint);
+  for (const auto& cell : checkpoint->solver.cells) {
+    const double x = 0.005 * cell[0], y = 0.005 * cell[1];
+    if (x < 0.086 - 0.018) beyond[0] += 1.0;
+    if (y > 0.018) beyond[1] += 1.0;
+  }
+  EXPECT_NEAR(beyond[0] / beyond[1], 1.0, 0.25);
 }
 
 TEST_F(Print, ASecondLayerLiesOnTheFirst) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scenes/apparatus/apparatus_header.h"
+#include "scenes/apparatus/gcode.h"
 
 namespace flowrest::scenes {
 
@@ -21,7 +22,10 @@ struct Printing {
   PrintDirection direction = PrintDirection::same;
   Speeds printing_velocity;   ///< along the strand
   Speeds extrusion_velocity;  ///< of the material in the bore
+  Speeds flow;                ///< m3/s that come out, in place of it; empty where that is given
   double pause = 0.0;         ///< s, between layers
+  /// Where the mouth's middle is, in place of layers; empty where there are layers.
+  std::vector<Waypoint> path;
 
   /// One strand: when it is laid, from where to where, and how much material comes out for it.
   struct Layer {
@@ -37,6 +41,8 @@ struct Printing {
   /// m that the nozzle has moved, and of the column that have come out of it, from one time (s) to another.
   double moved(double from, double to) const;
   double extruded(double from, double to) const;
+  double lowest_mouth() const;   ///< m over the bed
+  double highest_mouth() const;  ///< m over the bed
 
   static constexpr const char* name = "printing";
   static constexpr const char* dimensions_meaning = "half or full of a printed strand";
@@ -48,14 +54,22 @@ struct Printing {
   static std::vector<Dimension> dimensions() { return {Dimension::half, Dimension::full}; }
   static std::vector<Key> keys();
   /// m, of all layers when they lie
-  double body_size() const { return nozzle_gap; }
-  double body_height() const { return nozzle_gap + (layers - 1) * layer_height.value_or(nozzle_gap); }
+  double body_size() const { return lowest_mouth(); }
+  double body_height() const { return highest_mouth(); }
   void check(const Case&) const;
   void check_gauges(const Case&) const {}
   /// The nozzle drives it, whatever it yields at.
   std::optional<Load> load(const Scene&) const { return std::nullopt; }
   Pieces pieces(const Scene&) const;
   bool operator==(const Printing&) const = default;
+
+ private:
+  void check_speeds(const Case&) const;
+  void check_path(const Case&) const;
+  Pieces pieces_of_layers(const Scene&, double cell) const;
+  Pieces pieces_of_path(const Scene&, double cell) const;
+  /// Whether it goes along x, at one height and without turning: then it has a section behind it.
+  bool path_is_straight() const;
 };
 
 }  // namespace flowrest::scenes
