@@ -272,27 +272,139 @@ TEST(Thixotropy, StepsApproachTheClosedFormAtRestAndInSteadyShear) {
   }
 }
 
+/// At rest nothing breaks: the yield stress is tau0, what flocs have gained and what age has.
+TEST(Ageing, IsPerrotsAndLinearWithoutItsTime) {
+  const Ageing<double> perrot{0.02, 1.0 / 3000.0, 600.0}, linear{0.02, 0.0, 600.0};
+  EXPECT_NEAR(perrot.grown(1200.0), 0.02 * 3000.0 * (std::exp(1800.0 / 3000.0) - 1.0), 1e-12);
+  EXPECT_DOUBLE_EQ(linear.grown(1200.0), 0.02 * 1800.0);
+  EXPECT_NEAR((Ageing<double>{0.02, 1e-12, 600.0}.grown(1200.0)), linear.grown(1200.0), 1e-7);
+  EXPECT_EQ(Ageing<double>{}.grown(1e6), 0.0);
+  const Ageing<Dual> seeded{0.02, 1.0 / 3000.0, 600.0};
+  EXPECT_NEAR(seeded.grown(Dual{1200.0, 1.0}).d, 0.02 * std::exp(0.6), 1e-15) << "A exp(t / t_c)";
+}
+
+/// Loaded up to what it holds at its age and not past it, whatever the law of the flow.
+TEST(Ageing, AtRestTheYieldStressIsTheSumOfFlocsAndAge) {
+  const Structure<double> structure{0.39 / yield, 0.15};
+  const Ageing<double> ageing{0.5, 1.0 / 400.0, 30.0};
+  const double dt = 0.1;
+  double lambda = 0.2;
+  for (int i = 1; i <= 1000; ++i) {
+    const double grown = ageing.grown(i * dt);
+    const double holds =
+        yield + 0.2 * yield + 0.39 * i * dt + 0.5 * 400.0 * std::expm1((30.0 + i * dt) / 400.0);
+    for (const double past : {-1e-9, 1e-9}) {
+      const auto at = Thixotropic<ElastoViscoplastic>::relax(
+          concrete, structure, {holds + past, modulus * dt}, dt, lambda, 0.0, grown);
+      ASSERT_EQ(at.rate > 0.0, past > 0.0) << i;
+    }
+    lambda = Thixotropic<ElastoViscoplastic>::relax(concrete, structure, {10.0, modulus * dt}, dt, lambda,
+                                                    0.0, grown)
+                 .flocculation;
+  }
+  EXPECT_NEAR(lambda, 0.2 + 0.39 / yield * 100.0, 1e-12);
+}
+
+/// Flow takes nothing of it: every law has in flow the stress of the yield stress that age gives it.
+TEST(Ageing, IsNotTakenBackByFlow) {
+  const double grown = 35.0, dt = 1e-3;
+  for (const Law law : every_law)
+    for (const double trial : {20.0, 120.0, 1e4})
+      visit(law, [&](auto own) {
+        using Own = decltype(own);
+        if (!has_yield_stress(law)) return 0;
+        Parameters<double> aged = concrete;
+        aged.yield_stress += grown;
+        const auto expected = Own::relax(aged, Trial<double>{trial, 40.0}, 0.1);
+        const auto relaxed = Thixotropic<Own>::relax(concrete, Structure<double>{0.0, 0.3},
+                                                     Trial<double>{trial, 40.0}, dt, 0.0, 0.1, grown);
+        EXPECT_NEAR(relaxed.stress, expected.stress, 1e-12 * trial) << name_of(law);
+        EXPECT_NEAR(relaxed.rate, expected.rate, 1e-12 * (1.0 + expected.rate)) << name_of(law);
+        return 0;
+      });
+}
+
+constexpr double exponents[] = {0.3, 0.5, 0.9, 1.0, 1.2, 1.5, 2.0};
+
+/// The balance that is solved, with any powers of breakdown and flow, and age.
+TEST(Thixotropy, TheSolidsReturnBalancesForEveryPowerOfBreakdown) {
+  for (const double m : exponents)
+    for (const double n : {0.5, 1.0, 1.2})
+      for (const double alpha : {0.0, 1e-6, 0.15, 1.0})
+        for (const double trial : {60.0, 150.0, 1e3, 1e6})
+          for (const double grown : {0.0, 12.0})
+            for (const double lambda : {0.0, 0.5, 1.8}) {
+              const Structure<double> structure{0.39 / yield, alpha, m};
+              const double dt = 1e-3;
+              const auto relaxed = Thixotropic<ElastoViscoplastic>::relax(
+                  power_law(n), structure, Trial<double>{trial, modulus * dt}, dt, lambda, 0.0, grown);
+              const double holds = (1.0 + relaxed.flocculation) * yield + grown;
+              ASSERT_EQ(relaxed.rate == 0.0, trial <= (1.0 + lambda + structure.growth * dt) * yield + grown);
+              EXPECT_NEAR(relaxed.flocculation,
+                          (lambda + structure.growth * dt) / (1.0 + dt * alpha * std::pow(relaxed.rate, m)),
+                          1e-12 * (1.0 + lambda));
+              if (relaxed.rate == 0.0) continue;
+              EXPECT_NEAR(trial, holds + viscosity * std::pow(relaxed.rate, n) + modulus * dt * relaxed.rate,
+                          1e-12 * trial)
+                  << m << " " << n << " " << alpha << " " << trial << " " << lambda << " " << grown;
+              EXPECT_NEAR(relaxed.stress, trial - modulus * dt * relaxed.rate, 1e-14 * trial);
+            }
+}
+
+/// The search where there is a closed form.
+TEST(Thixotropy, APowerNextToOneReturnsAsTheClosedForm) {
+  for (const double alpha : {1e-6, 0.15, 1.0})
+    for (const double trial : {150.0, 1e3, 1e5}) {
+      const Structure<double> linear{0.39 / yield, alpha}, nearly{0.39 / yield, alpha, 1.0 + 1e-13};
+      const auto closed =
+          Thixotropic<ElastoViscoplastic>::relax(concrete, linear, {trial, 40.0}, 1e-3, 0.5, 0.0);
+      const auto found =
+          Thixotropic<ElastoViscoplastic>::relax(concrete, nearly, {trial, 40.0}, 1e-3, 0.5, 0.0);
+      EXPECT_NEAR(found.stress, closed.stress, 1e-11 * trial);
+      EXPECT_NEAR(found.flocculation, closed.flocculation, 1e-11);
+    }
+}
+
+/// At a constant rate lambda goes to growth / (alpha rate^m), exponentially with alpha rate^m: in closed form,
+/// and by steps that approach it in first order.
+TEST(Thixotropy, AConstantRateBreaksDownByItsPower) {
+  for (const double m : exponents)
+    for (const double rate : {0.2, 1.0, 4.0}) {
+      const Structure<double> structure{0.4, 0.2, m};
+      const double decay = 0.2 * std::pow(rate, m), balance = 0.4 / decay;
+      const double exact = balance + (3.0 - balance) * std::exp(-2.0 * decay);
+      EXPECT_NEAR(structure.after(3.0, rate, 2.0), exact, 1e-13);
+      EXPECT_NEAR(structure.after(3.0, rate, 1e4 / decay), balance, 1e-12 * balance);
+      double coarse = 3.0, fine = 3.0;
+      for (int i = 0; i < 2000; ++i) coarse = structure.stepped(coarse, rate, 1e-3);
+      for (int i = 0; i < 4000; ++i) fine = structure.stepped(fine, rate, 5e-4);
+      EXPECT_NEAR(2.0 * fine - coarse, exact, 1e-5) << "first order in the step";
+      EXPECT_NEAR(structure.stepped(balance, rate, 0.7), balance, 1e-13 * balance) << "it stays in balance";
+    }
+}
+
 /// Derivatives of a return by any of its data, against central differences.
 TEST(Laws, DerivativesGoThroughEveryReturn) {
-  // tau0, eta, m, critical rate, growth, breakdown, trial, shear, lambda, n
+  // tau0, eta, m, critical rate, growth, breakdown, trial, shear, lambda, n, power of breakdown, grown
   using Data = std::vector<double>;
   const auto relaxed = [](Law law, bool thixotropic, const auto& x) {
     using T = std::decay_t<decltype(x[0])>;
     const Parameters<T> p{x[0], x[1], x[2], x[3], x[9]};
-    const Structure<T> structure{x[4], x[5]};
+    const Structure<T> structure{x[4], x[5], x[10]};
     const Trial<T> trial{x[6], x[7]};
     return visit(law, [&](auto own) {
       using Own = decltype(own);
-      return thixotropic ? Thixotropic<Own>::relax(p, structure, trial, T(1e-2), x[8], T(0.4))
+      return thixotropic ? Thixotropic<Own>::relax(p, structure, trial, T(1e-2), x[8], T(0.4), x[11])
                          : Own::relax(p, trial, T(0.4));
     });
   };
   for (const Law law : every_law)
     for (const bool thixotropic : {false, true})
-      for (const double trial : {30.0, 300.0}) {
+      for (const auto& [trial, power] : {std::pair{30.0, 1.0}, {300.0, 1.0}, {300.0, 0.8}}) {
         const double index = needs(law, Parameter::flow_index) ? 0.7 : 1.0;
-        const Data at{yield, viscosity, 20.0, 0.05, 0.1, 0.3, trial, 40.0, 0.6, index};
+        const Data at{yield, viscosity, 20.0, 0.05, 0.1, 0.3, trial, 40.0, 0.6, index, power, 3.0};
         for (std::size_t i = 0; i < at.size(); ++i) {
+          if (i == 10 && power == 1.0) continue;  // the closed form, which has no other
           std::vector<Dual> seeded(at.begin(), at.end());
           seeded[i].d = 1.0;
           Data low = at, high = at;
