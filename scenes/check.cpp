@@ -108,6 +108,29 @@ void check_thixotropy(const Case& c) {
   }
 }
 
+/// An age without a rate would be passed over in silence; and growth is exponential.
+void check_ageing(const Case& c) {
+  if (!c.scene().thixotropy) return;
+  for (const char* path : {"thixotropy.ageing_time", "thixotropy.initial_age"})
+    if (c.usable({path, "thixotropy.ageing_rate"}) && c.given.gives(path) &&
+        !c.given.gives("thixotropy.ageing_rate"))
+      c.fault(path,
+              fmt::format("{} is given without thixotropy.ageing_rate, of which it says how it goes on; "
+                          "allowed: both, or neither",
+                          path));
+  if (!c.usable({"thixotropy.ageing_rate", "thixotropy.ageing_time", "thixotropy.initial_age", "time.end"}))
+    return;
+  constexpr double most = 1e9;  // Pa, of set concrete
+  const Thixotropy& thixotropy = *c.scene().thixotropy;
+  const double grown = thixotropy.ageing().grown(c.scene().time.end);
+  if (grown <= most) return;
+  c.fault(
+      thixotropy.ageing_time ? "thixotropy.ageing_time" : "thixotropy.ageing_rate",
+      fmt::format("the yield stress grows with age by {:.3g} Pa until time.end; allowed: at most {:g} Pa, "
+                  "with a smaller thixotropy.ageing_rate or initial_age, or a longer ageing_time",
+                  grown, most));
+}
+
 bool step_is_known(const Case& c) {
   for (const Key& key : keys())
     if (key.section == "geometry" && key.suits(c.scene().geometry.apparatus) && !c.usable({key.path()}))
@@ -126,6 +149,9 @@ bool step_is_known(const Case& c) {
                    "material.critical_shear_rate",
                    "thixotropy.flocculation_rate",
                    "thixotropy.initial_flocculation",
+                   "thixotropy.ageing_rate",
+                   "thixotropy.ageing_time",
+                   "thixotropy.initial_age",
                    "mpm.cell",
                    "mpm.particles_per_cell",
                    "mpm.cfl",
@@ -246,6 +272,7 @@ void check(const Given& given, const Draft& draft, Faults& faults) {
   check_flow_index(c);
   check_foam_runs(c);
   check_thixotropy(c);
+  check_ageing(c);
   check_b_bar(c);
   check_outputs(c);
   std::visit([&](const auto& a) { a.check_gauges(c); }, draft.scene.geometry.apparatus);

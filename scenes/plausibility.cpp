@@ -74,6 +74,13 @@ const std::vector<Rule>& rules() {
        {{"MPa", 1e6}, {"kPa", 1e3}},
        is_elastic},
       {{"thixotropy.flocculation_rate"}, 1e-3, 50.0, "from a slow mix to one with an accelerator", of_stress},
+      {{"thixotropy.ageing_rate"}, 1e-4, 50.0, "from a slow mix to one with an accelerator", of_stress},
+      {{"thixotropy.ageing_time"},
+       100.0,
+       1e6,
+       "from a mix with an accelerator to one that is retarded",
+       {{"min", 60.0}, {"h", 3600.0}}},
+      {{"thixotropy.breakdown_exponent"}, 0.2, 2.0, "about Roussel's 1"},
       {{"geometry.cone_height", "geometry.cone_radius_top", "geometry.cone_radius_bottom", "geometry.height",
         "geometry.reservoir_length", "geometry.reservoir_height", "geometry.width", "geometry.channel_height",
         "geometry.rebar_distance", "geometry.top_width", "geometry.outlet_width", "geometry.depth",
@@ -132,8 +139,14 @@ void hold_to_rules(const Scene& scene, std::vector<std::string>& notes) {
 
 /// Pa, at the start.
 double yield_stress_of(const Scene& scene) {
-  const double structure = scene.thixotropy ? scene.thixotropy->initial_flocculation : 0.0;
-  return (1.0 + structure) * scene.material.yield_stress;
+  return scene.local_yield_stress(scene.thixotropy ? scene.thixotropy->initial_flocculation : 0.0, 0.0);
+}
+
+/// " with its flocculation": what of it is not the material's own.
+const char* sources_of_yield_stress(const Scene& scene) {
+  const bool flocs = scene.thixotropy && scene.thixotropy->initial_flocculation > 0.0;
+  if (scene.grown_yield_stress(0.0) > 0.0) return flocs ? " with its flocculation and age" : " with its age";
+  return flocs ? " with its flocculation" : "";
 }
 
 void hold_to_load(const Scene& scene, std::vector<std::string>& notes) {
@@ -143,7 +156,7 @@ void hold_to_load(const Scene& scene, std::vector<std::string>& notes) {
   notes.push_back(fmt::format(
       "the yield stress holds {}: nothing will flow{}; it is {:.4g} Pa{}, and {} is {:.4g} Pa", load->what,
       scene.material.model == Model::elasto_viscoplastic ? "" : ", but for the creep of a regularised fluid",
-      yield, yield > scene.material.yield_stress ? " with its flocculation" : "", load->rule, load->stress));
+      yield, sources_of_yield_stress(scene), load->rule, load->stress));
 }
 
 /// Concrete yields after a strain of a few per cent at most.

@@ -130,6 +130,16 @@ TEST(Plausibility, FlocculationAddsToWhatHolds) {
       ElementsAre(AllOf(HasSubstr("holds the cone: nothing will flow"), HasSubstr("with its flocculation"))));
 }
 
+TEST(Plausibility, AgeAddsToWhatHolds) {
+  const Notes notes =
+      notes_of("mix-a-slump-sf0", {"thixotropy.ageing_rate=1", "thixotropy.initial_age=4000"});
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0], AllOf(HasSubstr("holds the cone: nothing will flow"), HasSubstr("age, and")));
+  EXPECT_THAT(notes_of("mix-a-slump-sf0", {"thixotropy.ageing_rate=0.1", "thixotropy.ageing_time=1.5"}),
+              Contains(AllOf(HasSubstr("thixotropy.ageing_time is 1.5 s, which is implausible"),
+                             HasSubstr("in h that would be 5400 s"))));
+}
+
 TEST(Plausibility, ARegularisedFluidCreepsEvenThen) {
   EXPECT_THAT(slump_with({"material.yield_stress=5000", "material.model=papanastasiou"}),
               ElementsAre(HasSubstr("nothing will flow, but for the creep of a regularised fluid")));

@@ -47,6 +47,10 @@ Gauges gauges_of_body(const Scene& scene) {
 
 MainGauge Scene::main_gauge() const { return main_gauge_of(geometry.apparatus); }
 
+double Scene::grown_yield_stress(double when) const {
+  return thixotropy && laws::has_yield_stress(material.model) ? thixotropy->ageing().grown(when) : 0.0;
+}
+
 double Scene::body_height() const {
   return std::visit([](const auto& a) { return a.body_height(); }, geometry.apparatus);
 }

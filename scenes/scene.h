@@ -46,11 +46,23 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
-/// Roussel's structural build-up and breakdown, Yu et al. 2026, Eqs. 11 and 12.
+/// Roussel's structural build-up and breakdown, Yu et al. 2026, Eqs. 11 and 12, and growth with age after Perrot
+/// et al. 2016 (laws/structure.h).
 struct Thixotropy {
   double flocculation_rate = 0.0;           ///< A_thix, Pa/s
-  double deflocculation_coefficient = 0.0;  ///< alpha
+  double deflocculation_coefficient = 0.0;  ///< alpha, s^(breakdown_exponent - 1)
   double initial_flocculation = 0.0;        ///< lambda0
+  double breakdown_exponent = 1.0;          ///< m, the power of the shear rate by which flow breaks down
+  double ageing_rate = 0.0;                 ///< Pa/s, of the yield stress that flow does not take back
+  std::optional<double> ageing_time;        ///< s, t_c of its exponential growth; without it is linear
+  double initial_age = 0.0;                 ///< s, of the concrete at the start
+
+  laws::Structure<double> structure(double yield_stress) const {
+    return {flocculation_rate / yield_stress, deflocculation_coefficient, breakdown_exponent};
+  }
+  laws::Ageing<double> ageing() const {
+    return {ageing_rate, ageing_time ? 1.0 / *ageing_time : 0.0, initial_age};
+  }
   bool operator==(const Thixotropy&) const = default;
 };
 
@@ -210,6 +222,17 @@ struct Scene {
   const Printing& printing() const { return std::get<Printing>(geometry.apparatus); }
   const DamBreak& dam_break() const { return std::get<DamBreak>(geometry.apparatus); }
   MainGauge main_gauge() const;
+  /// What the yield stress has grown by with age at a time in s, Pa; 0 where nothing ages.
+  double grown_yield_stress(double when) const;
+  /// The same over tau0: with lambda the part by which the local yield stress passes tau0.
+  double grown_over_yield_stress(double when) const {
+    const double grown = grown_yield_stress(when);
+    return grown > 0.0 ? grown / material.yield_stress : 0.0;
+  }
+  /// Of a place that is flocculated so at a time in s, Pa.
+  double local_yield_stress(double flocculation, double when) const {
+    return (1.0 + flocculation) * material.yield_stress + grown_yield_stress(when);
+  }
   /// Height of the material at the start, m.
   double body_height() const;
   /// By which lengths are carried from one body to another, m: its height, or of a cone the root of its volume.

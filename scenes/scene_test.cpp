@@ -194,6 +194,10 @@ TEST(Scene, ResolvedSettingsReadBackAsTheSameScene) {
       {"material.bulk_modulus=123456.789", "material.poisson_ratio=0.499", "runs.mpm=[]", "runs.exact=false"},
       {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
        "thixotropy.initial_flocculation=1.8", "time.stop_at_rest=false"},
+      {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
+       "thixotropy.initial_flocculation=1.8", "thixotropy.breakdown_exponent=0.70000000000000001",
+       "thixotropy.ageing_rate=0.012345678901234567", "thixotropy.ageing_time=3141.5926535897932",
+       "thixotropy.initial_age=599.9"},
       {"title=\"a \\\"quoted\\\" \\\\ title\\twith a tab\"", "mpm.allow_unstable_step=true",
        "mpm.time_step=1", "foam.max_time_step=1e-3", "foam.cell=0.007", "mpm.fluid_update=explicit",
        "mpm.seeding=jittered"},
@@ -213,6 +217,23 @@ TEST(Scene, EverySceneOfTheFolderCanBeUsedAndReadsBack) {
     if (summary.error.empty()) expect_round_trip(load_scene(summary.name));
   }
   expect_round_trip(load_scene("mix-a-lbox-sf0", {{"geometry.gate_lift_velocity=0.123456789012345678"}, {}}));
+}
+
+TEST(Scene, StructureIsRousselsAndAgelessUnlessGiven) {
+  const Scene usual = load_scene("mix-a-slump-sf0");
+  EXPECT_EQ(usual.thixotropy->breakdown_exponent, 1.0);
+  EXPECT_EQ(usual.grown_yield_stress(1e6), 0.0);
+  EXPECT_DOUBLE_EQ(usual.local_yield_stress(0.5, 10.0), 1.5 * usual.material.yield_stress);
+  const std::vector<std::string> aged{"thixotropy.ageing_rate=0.02", "thixotropy.initial_age=600"};
+  const Scene linear = load_scene("mix-a-slump-sf0", {aged, {}});
+  EXPECT_DOUBLE_EQ(linear.local_yield_stress(0.5, 10.0), 1.5 * usual.material.yield_stress + 0.02 * 610.0);
+  auto curved = aged;
+  curved.emplace_back("thixotropy.ageing_time=3000");
+  EXPECT_NEAR(load_scene("mix-a-slump-sf0", {curved, {}}).grown_yield_stress(10.0),
+              60.0 * std::expm1(610.0 / 3000.0), 1e-12);
+  curved.emplace_back("material.model=newtonian");
+  EXPECT_EQ(load_scene("mix-a-slump-sf0", {curved, {}}).grown_yield_stress(10.0), 0.0)
+      << "what has no yield stress";
 }
 
 TEST(Scene, AVariantGivesOnlyWhatDiffers) {

@@ -152,6 +152,17 @@ std::vector<Key> thixotropy_keys() {
              AT(draft.scene.thixotropy->initial_flocculation),
              "flocculation lambda at the start (Yu et al. 2026, Eq. 11)")
           .needed(),
+      number("thixotropy.breakdown_exponent", "", above(0.0, 4.0),
+             AT(draft.scene.thixotropy->breakdown_exponent),
+             "power of the shear rate in 1/s by which flow breaks flocs down; 1 is that of Eq. 12"),
+      number(
+          "thixotropy.ageing_rate", "Pa/s", from(0.0, 1e9), AT(draft.scene.thixotropy->ageing_rate),
+          "growth of the yield stress with age that flow does not take back, at age 0 (Perrot et al. 2016)"),
+      number("thixotropy.ageing_time", "s", above(0.0, largest_time), AT(draft.scene.thixotropy->ageing_time),
+             "time t_c of its exponential growth, ageing_rate t_c (exp(age / t_c) - 1)")
+          .otherwise("infinite: it grows linearly"),
+      number("thixotropy.initial_age", "s", from(0.0, largest_time), AT(draft.scene.thixotropy->initial_age),
+             "age of the concrete at the start, counted from mixing"),
   };
 }
 

@@ -18,12 +18,12 @@ double stiffening(const Material& material, double pressure) {
 }
 
 /// Yield stress that thixotropy can reach by the end of a run: Yu et al. 2026, Eqs. 11 and 12 without
-/// breakdown.
+/// breakdown, and growth with age.
 double largest_yield_stress(const Scene& scene) {
   const double tau0 = scene.material.yield_stress;
   if (!scene.thixotropy) return tau0;
   return tau0 * (1.0 + scene.thixotropy->initial_flocculation) +
-         scene.thixotropy->flocculation_rate * scene.time.end;
+         scene.thixotropy->flocculation_rate * scene.time.end + scene.grown_yield_stress(scene.time.end);
 }
 
 /// Largest viscosity that the scene's law can have by the end of a run.

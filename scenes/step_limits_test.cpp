@@ -69,6 +69,11 @@ TEST(StepLimits, TheViscousLimitFollowsTheLargestViscosityOfTheModel) {
   EXPECT_NEAR(limit({"material.model=papanastasiou", "thixotropy.flocculation_rate=0.5",
                      "thixotropy.deflocculation_coefficient=0.1", "thixotropy.initial_flocculation=2"}),
               inertia / (50.0 + 100.0 * (50.0 * 3.0 + 0.5 * 60.0)), 1e-15);
+  EXPECT_NEAR(
+      limit({"material.model=papanastasiou", "thixotropy.flocculation_rate=0.5",
+             "thixotropy.deflocculation_coefficient=0.1", "thixotropy.initial_flocculation=2",
+             "thixotropy.ageing_rate=0.2", "thixotropy.ageing_time=300", "thixotropy.initial_age=90"}),
+      inertia / (50.0 + 100.0 * (50.0 * 3.0 + 0.5 * 60.0 + 60.0 * (std::exp(0.5) - 1.0))), 1e-15);
 }
 
 TEST(EstimateMpm, CountsParticlesCellsAndSteps) {

@@ -264,6 +264,14 @@ const Wrong wrong_scenes[] = {
      "[thixotropy]\nflocculation_rate = 0.4\ndeflocculation_coefficient = 0.1\ninitial_flocculation = "
      "-1\n[walls]",
      "wrong.toml:22:24: thixotropy.initial_flocculation is -1; allowed: at least 0, at most 1e+09"},
+    {"BreakdownExponentOfZero", thixotropic_text, "[walls]", "breakdown_exponent = 0\n[walls]",
+     "wrong.toml:23:22: thixotropy.breakdown_exponent is 0; allowed: greater than 0, at most 4"},
+    {"NegativeAgeingRate", thixotropic_text, "[walls]", "ageing_rate = -0.1\n[walls]",
+     "wrong.toml:23:15: thixotropy.ageing_rate is -0.1; allowed: at least 0, at most 1e+09"},
+    {"AgeingTimeOfZero", thixotropic_text, "[walls]", "ageing_rate = 0.1\nageing_time = 0\n[walls]",
+     "wrong.toml:24:15: thixotropy.ageing_time is 0; allowed: greater than 0, at most 1e+12"},
+    {"BornInTheFuture", thixotropic_text, "[walls]", "ageing_rate = 0.1\ninitial_age = -60\n[walls]",
+     "wrong.toml:24:15: thixotropy.initial_age is -60; allowed: at least 0, at most 1e+12"},
     {"NoTimeAtAll", slump_text, "end = 60.0", "end = 0",
      "wrong.toml:24:7: time.end is 0; allowed: greater than 0, at most 1e+12"},
     {"NegativeTime", slump_text, "end = 60.0", "end = -60.0",
@@ -405,6 +413,18 @@ const Wrong wrong_scenes[] = {
     {"ThixotropyWithoutYieldStress", thixotropic_text, "yield_stress = 50", "yield_stress = 0",
      "wrong.toml:14:16: the yield stress is 0, but flocculation grows at flocculation_rate / yield_stress; "
      "allowed: a yield stress greater than 0 in scenes"},
+    {"AgeingTimeWithoutRate", thixotropic_text, "[walls]", "ageing_time = 3000\n[walls]",
+     "wrong.toml:23:15: thixotropy.ageing_time is given without thixotropy.ageing_rate, of which it says how "
+     "it goes on; allowed: both, or neither"},
+    {"AgeWithoutRate", thixotropic_text, "[walls]", "initial_age = 600\n[walls]",
+     "wrong.toml:23:15: thixotropy.initial_age is given without thixotropy.ageing_rate, of which it says how "
+     "it goes on; allowed: both, or neither"},
+    {"SetBeforeItsEnd", thixotropic_text, "[walls]", "ageing_rate = 0.1\nageing_time = 2\n[walls]",
+     "wrong.toml:24:15: the yield stress grows with age by 2.14e+12 Pa until time.end; allowed: at most "
+     "1e+09 Pa, with a smaller thixotropy.ageing_rate or initial_age, or a longer ageing_time"},
+    {"AgeThatOverflows", thixotropic_text, "[walls]",
+     "ageing_rate = 0.1\nageing_time = 1\ninitial_age = 1e6\n[walls]",
+     "wrong.toml:24:15: the yield stress grows with age by inf Pa until time.end"},
     {"InviscidInOpenFoam", slump_text, "plastic_viscosity = 50.0", "plastic_viscosity = 0",
      "wrong.toml:15:21: material.plastic_viscosity is 0, on which the step of a fluid in OpenFOAM depends; "
      "allowed: greater than 0 or foam.max_time_step where runs.foam names a fluid"},
