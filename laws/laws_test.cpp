@@ -279,6 +279,7 @@ TEST(Ageing, IsPerrotsAndLinearWithoutItsTime) {
   EXPECT_DOUBLE_EQ(linear.grown(1200.0), 0.02 * 1800.0);
   EXPECT_NEAR((Ageing<double>{0.02, 1e-12, 600.0}.grown(1200.0)), linear.grown(1200.0), 1e-7);
   EXPECT_EQ(Ageing<double>{}.grown(1e6), 0.0);
+  EXPECT_EQ((Ageing<double>{0.0, 1.0, 1e6}.grown(1.0)), 0.0) << "where the power overflows";
   const Ageing<Dual> seeded{0.02, 1.0 / 3000.0, 600.0};
   EXPECT_NEAR(seeded.grown(Dual{1200.0, 1.0}).d, 0.02 * std::exp(0.6), 1e-15) << "A exp(t / t_c)";
 }

@@ -58,6 +58,7 @@ struct Ageing {
   /// What has come to the yield stress by a time in s, Pa.
   T grown(const T& time) const {
     using std::expm1;
+    if (!(rate > T(0))) return T(0);  // whatever its time, which may be so short that the power overflows
     const T age = initial_age + time;
     return per_time > T(0) ? rate * (expm1(per_time * age) / per_time) : rate * age;
   }

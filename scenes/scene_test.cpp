@@ -231,6 +231,9 @@ TEST(Scene, StructureIsRousselsAndAgelessUnlessGiven) {
   curved.emplace_back("thixotropy.ageing_time=3000");
   EXPECT_NEAR(load_scene("mix-a-slump-sf0", {curved, {}}).grown_yield_stress(10.0),
               60.0 * std::expm1(610.0 / 3000.0), 1e-12);
+  EXPECT_EQ(load_scene("mix-a-slump-sf0", {{"thixotropy.ageing_rate=0", "thixotropy.ageing_time=1e-3"}, {}})
+                .grown_yield_stress(10.0),
+            0.0);
   curved.emplace_back("material.model=newtonian");
   EXPECT_EQ(load_scene("mix-a-slump-sf0", {curved, {}}).grown_yield_stress(10.0), 0.0)
       << "what has no yield stress";

@@ -20,6 +20,8 @@ struct FlowParameters {
   T flocculation_growth{};  ///< A_thix / tau0, 1/s
   T deflocculation{};       ///< alpha
   T flow_index{1};          ///< n
+  T breakdown_exponent{1};  ///< m
+  T grown{};                ///< Pa that the yield stress has grown by with age, at the step's end
 };
 
 /// What a step leaves of the trial.
@@ -30,7 +32,32 @@ struct Relaxed {
   T lambda{};  ///< flocculation state after the step
 };
 
-/// Elasto-viscoplastic Bingham solid: closed-form return map, Yu et al. 2026, Eqs. 38 to 47.
+template <class T>
+constexpr T smallest_normal = std::numeric_limits<T>::min();
+
+/// A power of a rate, for rates that may vanish.
+template <class T>
+FLOWREST_INLINE T raised(T rate, T exponent) {
+  return power(minimum(maximum(rate, smallest_normal<T>), std::numeric_limits<T>::max()), exponent);
+}
+
+/// rate^m, by which flocs break; `Power`: m is not 1.
+template <bool Power, class T>
+FLOWREST_INLINE T breaking_flow(const FlowParameters<T>& p, T rate) {
+  if constexpr (!Power) return rate;
+  const T flow = raised(rate, p.breakdown_exponent);
+  return rate > T(0) ? flow : T(0);
+}
+
+/// lambda after a step at a rate: breakdown of what there is at its end.
+template <bool Power, class T>
+FLOWREST_INLINE T flocculated(const FlowParameters<T>& p, T dt, T lambda, T rate) {
+  return (lambda + p.flocculation_growth * dt) /
+         (T(1) + dt * p.deflocculation * breaking_flow<Power>(p, rate));
+}
+
+/// Elasto-viscoplastic Bingham solid: closed-form return map, Yu et al. 2026, Eqs. 38 to 47. What has grown
+/// with age, which flow leaves as it is, is taken off the trial.
 template <bool Thixotropic>
 struct ElastoViscoplastic {
   static constexpr bool thixotropic = Thixotropic;
@@ -46,11 +73,12 @@ struct ElastoViscoplastic {
       const T rate = excess / viscosity;  // Eq. 47
       return {trial - shear * rate, rate, T(0)};
     } else {
-      const T lambda_trial = lambda + p.flocculation_growth * dt;                      // Eq. 38
-      const T excess = maximum(trial - (T(1) + lambda_trial) * p.yield_stress, T(0));  // Eq. 39
+      const T carried = trial - p.grown;
+      const T lambda_trial = lambda + p.flocculation_growth * dt;                        // Eq. 38
+      const T excess = maximum(carried - (T(1) + lambda_trial) * p.yield_stress, T(0));  // Eq. 39
       // Eqs. 43 and 44. As printed the root cancels for small alpha; this form does not, and holds for alpha
       // = 0.
-      const T xi = viscosity + dt * p.deflocculation * (p.yield_stress - trial);
+      const T xi = viscosity + dt * p.deflocculation * (p.yield_stress - carried);
       const T zeta = T(2) * p.deflocculation * dt * viscosity;
       const T root = square_root(xi * xi + T(2) * zeta * excess);
       const T flow = xi >= T(0) ? T(2) * excess / (xi + root) : (root - xi) / maximum(zeta, T(1e-30));
@@ -64,7 +92,7 @@ struct ElastoViscoplastic {
 
 /// A fluid whose stress is found pointwise implicitly: tau_trial - G dt x = tau(x). No viscous limit on the
 /// step. Thixotropy is staggered: lambda first, with the last step's rate, then the stress with lambda held.
-template <bool Thixotropic>
+template <bool Thixotropic, bool Power = false>
 struct BiViscous {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = false;
@@ -74,8 +102,8 @@ struct BiViscous {
                                           T rate_before) {
     T yield = p.yield_stress;
     if constexpr (Thixotropic) {
-      lambda = (lambda + p.flocculation_growth * dt) / (T(1) + dt * p.deflocculation * rate_before);
-      yield *= T(1) + lambda;
+      lambda = flocculated<Power>(p, dt, lambda, rate_before);
+      yield = yield * (T(1) + lambda) + p.grown;
     }
     const T stiff = p.plastic_viscosity + yield / p.critical_shear_rate;
     const T slow = trial / (shear + stiff);
@@ -134,7 +162,7 @@ struct Balance {
 /// at sqrt(x^2 + 1 / m^2): tau(x) = K x (x^2 + 1 / m^2)^((n - 1) / 2) + yield (1 - exp(-m x)). Where n > 1 the
 /// power bends against the yield stress, so that no start is safe for Newton's method alone: the loop over
 /// particles keeps the root between two rates.
-template <bool Thixotropic>
+template <bool Thixotropic, bool Power = false>
 struct HerschelBulkley {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = true;
@@ -144,8 +172,7 @@ struct HerschelBulkley {
   static FLOWREST_INLINE Relaxed<T> start(const FlowParameters<T>& p, T /*trial*/, T /*shear*/, T dt,
                                           T lambda, T rate_before) {
     if constexpr (!Thixotropic) return {T(0), rate_before, T(0)};
-    return {T(0), rate_before,
-            (lambda + p.flocculation_growth * dt) / (T(1) + dt * p.deflocculation * rate_before)};
+    return {T(0), rate_before, flocculated<Power>(p, dt, lambda, rate_before)};
   }
   /// lambda at the rate that is found.
   template <class T>
@@ -155,7 +182,7 @@ struct HerschelBulkley {
   template <class T>
   static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T trial, T shear, T /*dt*/, T lambda,
                                             T rate) {
-    const T yield = Thixotropic ? p.yield_stress * (T(1) + lambda) : p.yield_stress;
+    const T yield = Thixotropic ? p.yield_stress * (T(1) + lambda) + p.grown : p.yield_stress;
     const T time = p.regularisation_time, above = p.flow_index - T(1);
     const T square = rate * rate + T(1) / (time * time);
     const T viscosity = p.plastic_viscosity * power(square, T(0.5) * above);
@@ -166,8 +193,8 @@ struct HerschelBulkley {
 };
 
 /// The elasto-viscoplastic solid with a power of the rate, tau0 + K x^n, and breakdown within the step as
-/// above.
-template <bool Thixotropic>
+/// above, by a power of its own where `Power`.
+template <bool Thixotropic, bool Power = false>
 struct ElastoViscoplasticPower {
   static constexpr bool thixotropic = Thixotropic;
   static constexpr bool iterative = true;
@@ -178,32 +205,29 @@ struct ElastoViscoplasticPower {
   static FLOWREST_INLINE Relaxed<T> start(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
                                           T /*rate_before*/) {
     const T lambda_trial = Thixotropic ? lambda + p.flocculation_growth * dt : T(0);
-    const T half = T(0.5) * (trial - (T(1) + lambda_trial) * p.yield_stress);
-    const T viscous = raised(half / maximum(p.plastic_viscosity, smallest<T>), T(1) / p.flow_index);
+    const T carried = Thixotropic ? trial - p.grown : trial;
+    const T half = T(0.5) * (carried - (T(1) + lambda_trial) * p.yield_stress);
+    const T viscous = raised(half / maximum(p.plastic_viscosity, smallest_normal<T>), T(1) / p.flow_index);
     return {T(0), half > T(0) ? minimum(half / shear, viscous) : T(0), lambda_trial};
   }
   template <class T>
   static FLOWREST_INLINE T lambda_at(const FlowParameters<T>& p, T dt, T lambda, T rate) {
-    return lambda / (T(1) + dt * p.deflocculation * rate);
+    return lambda / (T(1) + dt * p.deflocculation * breaking_flow<Power>(p, rate));
   }
   template <class T>
   static FLOWREST_INLINE Balance<T> balance(const FlowParameters<T>& p, T trial, T shear, T dt, T lambda,
                                             T rate) {
     const T power_part = p.plastic_viscosity * raised(rate, p.flow_index);
-    const T slope = shear + p.flow_index * power_part / maximum(rate, smallest<T>);
+    const T slope = shear + p.flow_index * power_part / maximum(rate, smallest_normal<T>);
     if constexpr (!Thixotropic)
       return {rate > T(0) ? trial - p.yield_stress - shear * rate - power_part : T(0), slope};
-    const T broken = dt * p.deflocculation, left = T(1) / (T(1) + broken * rate);
-    return {rate > T(0) ? trial - (T(1) + lambda * left) * p.yield_stress - shear * rate - power_part : T(0),
-            slope - lambda * p.yield_stress * broken * left * left};
-  }
-
- private:
-  template <class T>
-  static constexpr T smallest = std::numeric_limits<T>::min();
-  template <class T>
-  static FLOWREST_INLINE T raised(T rate, T exponent) {
-    return power(minimum(maximum(rate, smallest<T>), std::numeric_limits<T>::max()), exponent);
+    const T flow = breaking_flow<Power>(p, rate), carried = trial - p.grown;
+    const T broken = dt * p.deflocculation, left = T(1) / (T(1) + broken * flow);
+    T weakening = lambda * p.yield_stress * broken * left * left;
+    if constexpr (Power) weakening *= p.breakdown_exponent * flow / maximum(rate, smallest_normal<T>);
+    return {
+        rate > T(0) ? carried - (T(1) + lambda * left) * p.yield_stress - shear * rate - power_part : T(0),
+        slope - weakening};
   }
 };
 

@@ -97,24 +97,22 @@ FLOWREST_INLINE T fluid_yield(const StepParameters<T>& step, const Strain<T, Dim
   if constexpr (!Thixotropic) {
     return step.flow.yield_stress;
   } else {
-    return step.flow.yield_stress * (T(1) + s.lambda[q]);
+    return step.flow.yield_stress * (T(1) + s.lambda[q]) + step.flow.grown;
   }
 }
 
-template <class T, int Dim>
+template <class T, int Dim, bool Power>
 void flocculate(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   const T dt = step.step;
 #pragma omp simd
-  for (int q = 0; q < count; ++q)
-    s.lambda[q] = (s.lambda[q] + step.flow.flocculation_growth * dt) /
-                  (T(1) + dt * step.flow.deflocculation * s.rate[q]);
+  for (int q = 0; q < count; ++q) s.lambda[q] = flocculated<Power>(step.flow, dt, s.lambda[q], s.rate[q]);
 }
 
 /// Newton's method on all particles of a tile at once until the slowest has converged.
-template <class T, int Dim, bool Thixotropic>
+template <class T, int Dim, bool Thixotropic, bool Power>
 void relax_papanastasiou(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   using Law = Papanastasiou<Thixotropic>;
-  if constexpr (Thixotropic) flocculate(step, s, count);
+  if constexpr (Thixotropic) flocculate<T, Dim, Power>(step, s, count);
   const T tolerance = sizeof(T) == 8 ? T(1e-14) : T(2e-6);  // of the trial's stress
   for (int iteration = 0; iteration < 100; ++iteration) {
     T change = T(0);
@@ -190,9 +188,9 @@ void relax_bracketed(const StepParameters<T>& step, const Strain<T, Dim>& s, int
 }
 
 /// Explicit fluid: the stress of the present rate. `Curve` is `T(flow, yield, rate)`.
-template <class T, int Dim, bool Thixotropic, class Curve>
+template <class T, int Dim, bool Thixotropic, bool Power, class Curve>
 void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int count, const Curve& curve) {
-  if constexpr (Thixotropic) flocculate(step, s, count);
+  if constexpr (Thixotropic) flocculate<T, Dim, Power>(step, s, count);
 #pragma omp simd
   for (int q = 0; q < count; ++q) {
     const T rate = s.trial[q];
@@ -202,41 +200,41 @@ void relax_explicit(const StepParameters<T>& step, const Strain<T, Dim>& s, int 
   }
 }
 
-template <class T, int Dim, bool Thixotropic>
+template <class T, int Dim, bool Thixotropic, bool Power>
 void relax_explicit_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
   using Flow = FlowParameters<T>;
   switch (step.law) {
     case Law::papanastasiou:
-      return relax_explicit<T, Dim, Thixotropic>(step, s, count, [](const Flow& p, T yield, T rate) {
+      return relax_explicit<T, Dim, Thixotropic, Power>(step, s, count, [](const Flow& p, T yield, T rate) {
         return papanastasiou_stress(p, yield, rate);
       });
     case Law::herschel_bulkley:
-      return relax_explicit<T, Dim, Thixotropic>(step, s, count, [](const Flow& p, T yield, T rate) {
+      return relax_explicit<T, Dim, Thixotropic, Power>(step, s, count, [](const Flow& p, T yield, T rate) {
         return herschel_bulkley_stress(p, yield, rate);
       });
     case Law::elasto_viscoplastic:  // never explicit
     case Law::bi_viscous:
     case Law::newtonian:
-      return relax_explicit<T, Dim, Thixotropic>(
+      return relax_explicit<T, Dim, Thixotropic, Power>(
           step, s, count, [](const Flow& p, T yield, T rate) { return bi_viscous_stress(p, yield, rate); });
   }
 }
 
-template <class T, int Dim, bool Thixotropic>
+template <class T, int Dim, bool Thixotropic, bool Power>
 void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
-  if (step.explicit_fluid) return relax_explicit_by_law<T, Dim, Thixotropic>(step, s, count);
+  if (step.explicit_fluid) return relax_explicit_by_law<T, Dim, Thixotropic, Power>(step, s, count);
   switch (step.law) {
     case Law::elasto_viscoplastic:
-      // A flow index of 1 keeps its closed form.
-      return step.flow.flow_index == T(1)
+      // A flow index of 1 keeps its closed form, unless breakdown goes by another power.
+      return !Power && step.flow.flow_index == T(1)
                  ? relax_closed<T, Dim, ElastoViscoplastic<Thixotropic>>(step, s, count)
-                 : relax_bracketed<T, Dim, ElastoViscoplasticPower<Thixotropic>>(step, s, count);
+                 : relax_bracketed<T, Dim, ElastoViscoplasticPower<Thixotropic, Power>>(step, s, count);
     case Law::papanastasiou:
-      return relax_papanastasiou<T, Dim, Thixotropic>(step, s, count);
+      return relax_papanastasiou<T, Dim, Thixotropic, Power>(step, s, count);
     case Law::bi_viscous:
-      return relax_closed<T, Dim, BiViscous<Thixotropic>>(step, s, count);
+      return relax_closed<T, Dim, BiViscous<Thixotropic, Power>>(step, s, count);
     case Law::herschel_bulkley:
-      return relax_bracketed<T, Dim, HerschelBulkley<Thixotropic>>(step, s, count);
+      return relax_bracketed<T, Dim, HerschelBulkley<Thixotropic, Power>>(step, s, count);
     case Law::newtonian:
       return relax_closed<T, Dim, Newtonian>(step, s, count);
   }
@@ -244,7 +242,9 @@ void relax_by_law(const StepParameters<T>& step, const Strain<T, Dim>& s, int co
 
 template <class T, int Dim>
 void relax(const StepParameters<T>& step, const Strain<T, Dim>& s, int count) {
-  step.thixotropic ? relax_by_law<T, Dim, true>(step, s, count) : relax_by_law<T, Dim, false>(step, s, count);
+  if (!step.thixotropic) return relax_by_law<T, Dim, false, false>(step, s, count);
+  step.flow.breakdown_exponent == T(1) ? relax_by_law<T, Dim, true, false>(step, s, count)
+                                       : relax_by_law<T, Dim, true, true>(step, s, count);
 }
 
 }  // namespace flowrest::mpm::FLOWREST_KERNEL_SPACE

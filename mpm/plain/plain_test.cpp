@@ -177,6 +177,24 @@ TEST(Plain, SlumpsAsTheKernelsDoInEveryDimensionAndLaw) {
         }
 }
 
+/// Breakdown by a power of the rate, and growth with age, which is felt within these few steps.
+TEST(Plain, SlumpsAsTheKernelsDoWithEveryStructure) {
+  for (const Variant& v : dimensions)
+    for (const laws::Law law : laws::every_law)
+      for (const double exponent : {0.5, 1.0, 1.6}) {
+        if (!laws::has_yield_stress(law)) continue;
+        SolverSettings s = with_law(test::concrete(v), law, true);
+        s.structure.exponent = exponent;
+        s.ageing = {.rate = 400.0, .per_time = 2.0, .initial_age = 0.1};
+        const Slump slump(s);
+        Pair pair(slump.settings, slump.seeds);
+        const double step = 0.5 * test::usual_step(slump.settings);
+        const double worst = largest_difference(pair, step, slump.driving(), 2.0 * step);
+        std::printf("    %s, m = %g: %.2g\n", words(slump.settings).c_str(), exponent, worst);
+        EXPECT_LT(worst, allowed) << words(slump.settings) << ", m = " << exponent;
+      }
+}
+
 TEST(Plain, TakesTheChoicesOfTheScheme) {
   for (const Variant& v : dimensions)
     for (const int choice : {0, 1, 2, 3, 4}) {

@@ -22,7 +22,10 @@ Material<T> material_of(const SolverSettings& s) {
                   static_cast<T>(s.flow.regularisation_time), static_cast<T>(s.flow.critical_shear_rate),
                   static_cast<T>(s.flow.flow_index)};
   m.thixotropic = s.thixotropic;
-  m.structure = {static_cast<T>(s.structure.growth), static_cast<T>(s.structure.breakdown)};
+  m.structure = {static_cast<T>(s.structure.growth), static_cast<T>(s.structure.breakdown),
+                 static_cast<T>(s.structure.exponent)};
+  m.ageing = {static_cast<T>(s.ageing.rate), static_cast<T>(s.ageing.per_time),
+              static_cast<T>(s.ageing.initial_age)};
   return m;
 }
 

@@ -28,6 +28,7 @@ struct Material {
   laws::Parameters<T> parameters;
   bool thixotropic = false;
   laws::Structure<T> structure;
+  laws::Ageing<T> ageing;
 };
 
 /// How it is computed.
@@ -97,7 +98,7 @@ class Body {
     hold_to_planes(keep);
     grid_to_particles(dt, keep);
     average_dilatation();
-    strain_to_stress(dt, outcome);
+    strain_to_stress(dt, material_.ageing.grown(T(time) + dt), outcome);
     move(time + value(dt), dt, outcome);
     cover_and_sort();
     update_volumes(dt);
@@ -380,8 +381,9 @@ class Body {
 
   // 6 ------------------------------------------------------------------------------------------------------
 
-  /// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/).
-  void strain_to_stress(const T& dt, Outcome<T>& outcome) {
+  /// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/). `grown`: what the yield
+  /// stress has grown by with age, Pa.
+  void strain_to_stress(const T& dt, const T& grown, Outcome<T>& outcome) {
     for (std::size_t q = 0; q < particles_.size(); ++q) {
       Particle<T, Dim>& p = particles_[q];
       const Tensor<T>& l = motions_[q].gradient;
@@ -390,20 +392,20 @@ class Body {
       const Deviator<T> rate = strain_rate_deviator(l);
       const T shear = material_.state.shear(p.volume_ratio) * dt;
       const T stress = numerics_.explicit_fluid
-                           ? flow(dt, T(2) * rate, p)
-                           : relax(dt, shear, rotated(p.stress, l, dt) + T(2) * shear * rate, p);
+                           ? flow(dt, grown, T(2) * rate, p)
+                           : relax(dt, shear, grown, rotated(p.stress, l, dt) + T(2) * shear * rate, p);
       outcome.dissipated += dt * volume_of(p) * stress * p.rate;
       outcome.largest_pressure = std::max(outcome.largest_pressure, value(p.pressure));
     }
   }
 
   /// Returns a trial stress to the law; gives its invariant after the step, Pa.
-  T relax(const T& dt, const T& shear, const Deviator<T>& trial, Particle<T, Dim>& p) const {
+  T relax(const T& dt, const T& shear, const T& grown, const Deviator<T>& trial, Particle<T, Dim>& p) const {
     const laws::Trial<T> from{trial.invariant(), shear};
     const laws::Relaxed<T> relaxed = laws::visit(material_.law, [&](auto law) {
       using Law = decltype(law);
       return material_.thixotropic ? laws::Thixotropic<Law>::relax(material_.parameters, material_.structure,
-                                                                   from, dt, p.flocculation, p.rate)
+                                                                   from, dt, p.flocculation, p.rate, grown)
                                    : Law::relax(material_.parameters, from, p.rate);
     });
     p.stress = from.stress > T(0) ? T(relaxed.stress / from.stress) * trial : trial;
@@ -413,11 +415,12 @@ class Body {
   }
 
   /// A fluid's stress, explicitly: that of its rate; `twice_rate` is 2 D*, whose invariant is the shear rate.
-  T flow(const T& dt, const Deviator<T>& twice_rate, Particle<T, Dim>& p) const {
+  T flow(const T& dt, const T& grown, const Deviator<T>& twice_rate, Particle<T, Dim>& p) const {
     laws::Parameters<T> parameters = material_.parameters;
     if (material_.thixotropic) {
       p.flocculation = material_.structure.stepped(p.flocculation, p.rate, dt);
       parameters.yield_stress *= T(1) + p.flocculation;
+      parameters.yield_stress += grown;
     }
     p.rate = twice_rate.invariant();
     const T stress = laws::visit(material_.law, [&](auto law) { return law.stress(parameters, p.rate); });

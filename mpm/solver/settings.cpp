@@ -79,9 +79,10 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   s.flow = m.flow_curve().parameters;
   if (!laws::has_yield_stress(m.model)) s.flow.yield_stress = 0.0;
   s.thixotropic = scene.thixotropy.has_value() && laws::has_yield_stress(m.model);
-  if (s.thixotropic)
-    s.structure = {scene.thixotropy->flocculation_rate / m.yield_stress,
-                   scene.thixotropy->deflocculation_coefficient};
+  if (s.thixotropic) {
+    s.structure = scene.thixotropy->structure(m.yield_stress);
+    s.ageing = scene.thixotropy->ageing();
+  }
   s.state = {m.bulk_modulus(), m.shear_modulus(), m.equation_of_state_exponent};
   const SceneWalls walls = walls_of(pieces, s.dimension, s.cell);
   s.bounds = walls.bounds;

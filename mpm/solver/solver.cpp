@@ -103,6 +103,7 @@ class SolverOf final : public Solver {
 
   StepResult step(double step, const std::array<double, 3>& acceleration) override {
     parameters_.step = static_cast<T>(step);
+    if (settings_.thixotropic) parameters_.flow.grown = static_cast<T>(settings_.ageing.grown(time_ + step));
     parameters_.keep = static_cast<T>(share_kept(step));
     for (std::size_t a = 0; a < 3; ++a) parameters_.acceleration[a] = static_cast<T>(acceleration[a]);
     drive_ = step * std::hypot(acceleration[0], acceleration[1], acceleration[2]);
@@ -195,11 +196,15 @@ class SolverOf final : public Solver {
     auto& p = parameters_;
     p.cell = static_cast<T>(settings.cell);
     p.density = static_cast<T>(settings.density);
-    p.flow = {
-        static_cast<T>(settings.flow.yield_stress),        static_cast<T>(settings.flow.plastic_viscosity),
-        static_cast<T>(settings.flow.regularisation_time), static_cast<T>(settings.flow.critical_shear_rate),
-        static_cast<T>(settings.structure.growth),         static_cast<T>(settings.structure.breakdown),
-        static_cast<T>(settings.flow.flow_index)};
+    p.flow = {static_cast<T>(settings.flow.yield_stress),
+              static_cast<T>(settings.flow.plastic_viscosity),
+              static_cast<T>(settings.flow.regularisation_time),
+              static_cast<T>(settings.flow.critical_shear_rate),
+              static_cast<T>(settings.structure.growth),
+              static_cast<T>(settings.structure.breakdown),
+              static_cast<T>(settings.flow.flow_index),
+              static_cast<T>(settings.structure.exponent),
+              T(0)};
     p.state = {static_cast<T>(settings.state.bulk_modulus), static_cast<T>(settings.state.shear_modulus),
                static_cast<T>(settings.state.exponent)};
     p.law = settings.law;

@@ -37,6 +37,7 @@ struct SolverSettings {
   laws::Parameters<double> flow;
   bool thixotropic = false;
   laws::Structure<double> structure;  ///< of what is thixotropic
+  laws::Ageing<double> ageing;        ///< likewise; all of it is as old, fed or there from the start
   laws::EquationOfState<double> state;
   std::array<AxisBounds, 3> bounds{};
   std::vector<Wall> walls;      ///< of any shape, beside the planes of `bounds`
