@@ -24,12 +24,14 @@ void DuctSampler::sample(double time, const ReadField& read) {
   std::vector<double> velocity(cells());
   for (std::size_t i = 0; i < cells(); ++i) velocity[i] = field[3 * i];
   const double spacing = between_plates_ / static_cast<double>(cells());
-  const auto state = thixotropic() ? flocculation(time, read) : std::vector<double>(cells(), 0.0);
+  const auto lambda = thixotropic() ? flocculation(time, read) : std::vector<double>(cells(), 0.0);
+  const auto state = structure(time, lambda);
   overstressing_rate_ = 0.0;
-  // The rate over a distance, where the lesser flocculated of what it shears is this.
-  const auto shear = [&](double velocity_over, double distance, double lambda) {
-    overstressing_rate_ =
-        std::max(overstressing_rate_, std::abs(velocity_over) / (distance * (1.0 + lambda)));
+  // The rate over a distance, where the structure of the weaker of what it shears is this.
+  const auto shear = [&](double velocity_over, double distance, double weaker) {
+    overstressing_rate_ = std::max(
+        overstressing_rate_,
+        runs::overstressing_rate(std::abs(velocity_over) / distance, weaker, scene().material.flow_index));
   };
   if (scene().base.law != scenes::Wall::slip) {
     shear(velocity.front(), 0.5 * spacing, state.front());
@@ -48,8 +50,8 @@ void DuctSampler::sample(double time, const ReadField& read) {
         .add(resolution_until(time, sheared_layer(velocity, spacing)))
         .add(steps_until(time));
     if (thixotropic())
-      row.add(runs::column::flocculation,
-              std::accumulate(state.begin(), state.end(), 0.0) / static_cast<double>(cells()));
+      row.add(structure_columns(
+          time, std::accumulate(lambda.begin(), lambda.end(), 0.0) / static_cast<double>(cells())));
     writer().history(row);
   }
   if (profile_is_due(time)) writer().profile(time, height_, velocity);

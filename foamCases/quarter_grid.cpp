@@ -182,7 +182,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
   SlumpGauges gauges;
   std::vector<double> columns(grid.columns(), 0.0);  // m3, of concrete
   const auto rate = fields.shear_rate.empty() ? shear_rate(grid, fields.velocity, slip) : fields.shear_rate;
-  ConcreteRates inside;
+  ConcreteRates inside(fields.flow_index);
   std::vector<runs::Weighted> at_base;
   for_each_cell(grid, [&](const std::array<int, 3>& cell) {
     const auto [i, j, row] = cell;
@@ -193,7 +193,7 @@ SlumpGauges gauge_slump(const QuarterGrid& grid, const SlumpFields& fields, doub
     gauges.kinetic_energy += 0.5 * density * concrete * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     columns[grid.index(i, j, 0)] += concrete;
     if (fields.fraction[index] < nearly_full) return;
-    inside.add(rate[index], concrete, fields.flocculation, index);
+    inside.add(rate[index], concrete, fields.structure, index);
     if (!slip)
       gauges.layer.add(
           {grid.row_centre(row), grid.row_height(row), grid.row_height(row), concrete, rate[index]});

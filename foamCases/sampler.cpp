@@ -96,6 +96,19 @@ std::vector<double> Sampler::flocculation(double time, const ReadField& read) co
                     : std::vector<double>(cells(), scene_.thixotropy->initial_flocculation);
 }
 
+std::vector<double> Sampler::structure(double time, std::vector<double> flocculation) const {
+  if (!thixotropic()) return flocculation;
+  const double grown = scene_.grown_over_yield_stress(time);
+  for (double& state : flocculation) state += grown;
+  return flocculation;
+}
+
+runs::Row Sampler::structure_columns(double time, double flocculation) const {
+  runs::Row row;
+  return row.add(runs::column::flocculation, flocculation)
+      .add(runs::column::yield_stress, scene_.local_yield_stress(flocculation, time));
+}
+
 bool Sampler::history_is_due(double time) { return history_clock_.is_due(time, is_at_end(time)); }
 
 bool Sampler::profile_is_due(double time) { return profile_clock_.is_due(time, is_at_end(time)); }

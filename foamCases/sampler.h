@@ -79,8 +79,8 @@ class Sampler {
   Sampler(const scenes::Scene&, CaseFields, runs::RunWriter&, bool plug_in);
 
   virtual void sample(double time, const ReadField&) = 0;
-  /// 1/s, of the last sample: the 99th percentile, by volume of concrete, of the shear rate over 1 +
-  /// flocculation; `runs::nothing` where no cell is full enough to tell.
+  /// 1/s, of the last sample: the 99th percentile, by volume of concrete, of runs::overstressing_rate;
+  /// `runs::nothing` where no cell is full enough to tell.
   virtual double overstressing_rate() const = 0;
 
   const scenes::Scene& scene() const { return scene_; }
@@ -95,6 +95,10 @@ class Sampler {
   bool thixotropic() const;
   /// The field of the flocculation, as it is at the start while the solver has not written it yet.
   std::vector<double> flocculation(double time, const ReadField&) const;
+  /// The part by which every cell's yield stress passes tau0 with this flocculation.
+  std::vector<double> structure(double time, std::vector<double> flocculation) const;
+  /// What a row says of the structure, whose mean flocculation is this.
+  runs::Row structure_columns(double time, double flocculation) const;
   bool history_is_due(double time);
   bool profile_is_due(double time);
 

@@ -22,8 +22,10 @@ void SlumpSampler::sample(double time, const ReadField& read) {
   SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
   if (shear_rates_ && time > 0.0) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) {
-    fields.flocculation = flocculation(time, read);
-    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, fields.flocculation);
+    const auto lambda = flocculation(time, read);
+    state_.flocculation = mesh_->mean_over_concrete(fields.fraction, lambda);
+    fields.structure = structure(time, lambda);
+    fields.flow_index = scene().material.flow_index;
   }
   const auto gauges = mesh_->gauge(fields, scene().material.density, scene().base.law == scenes::Wall::slip);
   conservation_.add(time, gauges.volume, gauges.kinetic_energy);
@@ -55,7 +57,7 @@ void SlumpSampler::write_history(double time, const SlumpGauges& gauges) {
       .add(steps_until(time))
       .add(trapped_air, gauges.trapped_air)
       .add(volume_error, conservation_.error());
-  if (thixotropic()) row.add(runs::column::flocculation, state_.flocculation);
+  if (thixotropic()) row.add(structure_columns(time, state_.flocculation));
   writer().history(row);
 }
 

@@ -68,7 +68,7 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
   VesselGauges gauges;
   const double density = scene_.material.density;
   const bool held = floor_holds();
-  ConcreteRates inside;
+  ConcreteRates inside(scene_.material.flow_index);
   std::vector<runs::Weighted> at_floor;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const MeshCell& cell = cells_[i];
@@ -79,7 +79,7 @@ VesselGauges VesselGauge::measure(const VesselFields& fields) const {
     gauges.potential_energy += density * scene_.forces.gravity * concrete * cell.centre()[2];
     if (fields.fraction[i] < nearly_full) continue;
     if (!fields.shear_rate.empty()) {
-      inside.add(fields.shear_rate[i], concrete, fields.flocculation, i);
+      inside.add(fields.shear_rate[i], concrete, fields.structure, i);
       const auto at = cell.centre();
       // Cells over an outlet narrow towards it; those of other vessels are cubes.
       const double size = pieces_.runs_out ? cell.high[0] - cell.low[0] : scene_.foam.cell;

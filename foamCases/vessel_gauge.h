@@ -15,9 +15,9 @@ namespace flowrest::foam {
 /// Fields at one time, a value to a cell.
 struct VesselFields {
   std::vector<double> fraction;
-  std::vector<double> velocity;      ///< x, y, z of each cell, m/s
-  std::vector<double> shear_rate;    ///< 1/s; empty where nobody computes it
-  std::vector<double> flocculation;  ///< empty where nothing flocculates
+  std::vector<double> velocity;    ///< x, y, z of each cell, m/s
+  std::vector<double> shear_rate;  ///< 1/s; empty where nobody computes it
+  std::vector<double> structure;   ///< by which part the yield stress passes tau0; empty where there is none
 };
 
 /// What has nothing to read is `runs::nothing`.
@@ -27,7 +27,7 @@ struct VesselGauges {
   double kinetic_energy = 0.0;       ///< J, of the concrete alone
   double potential_energy = 0.0;     ///< J, over the floor or the outlet
   double shear_rate_p99 = 0.0;       ///< 1/s, by volume over cells at least 90 % full
-  /// 1/s, the same of the shear rate over 1 + flocculation: what overstresses the material.
+  /// 1/s, the same of runs::overstressing_rate: what overstresses the material.
   double overstressing_rate_p99 = 0.0;
   double base_shear_rate_p99 =
       0.0;                 ///< 1/s, velocity along the floor over half a cell, of cells at least 90 % full

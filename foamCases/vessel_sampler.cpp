@@ -21,8 +21,9 @@ void VesselSampler::sample(double time, const ReadField& read) {
   VesselFields fields{read("alpha.concrete", 1), read("U", 3), {}, {}};
   if (plug_in() && time > 0.0) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) {
-    fields.flocculation = flocculation(time, read);
-    flocculation_ = gauge_.mean_over_concrete(fields.fraction, fields.flocculation);
+    const auto lambda = flocculation(time, read);
+    flocculation_ = gauge_.mean_over_concrete(fields.fraction, lambda);
+    fields.structure = structure(time, lambda);
   }
   now_ = gauge_.measure(fields);
   conservation_.add(time, now_.volume, now_.kinetic_energy);
@@ -52,7 +53,7 @@ void VesselSampler::write_history(double time) {
       .add(resolution_until(time, now_.layer.layer()))
       .add(steps_until(time))
       .add(volume_error, conservation_.error());
-  if (thixotropic()) row.add(runs::column::flocculation, flocculation_);
+  if (thixotropic()) row.add(structure_columns(time, flocculation_));
   writer().history(row);
 }
 

@@ -76,13 +76,13 @@ double front_diameter(const WedgeGrid& grid, const std::vector<double>& fraction
 /// The shear rates within the concrete, and the layer along the base in which it is sheared.
 void gauge_shear_rates(const WedgeGrid& grid, const SlumpFields& fields, bool slip, SlumpGauges& gauges) {
   const auto rate = fields.shear_rate.empty() ? shear_rate(grid, fields.velocity, slip) : fields.shear_rate;
-  ConcreteRates in_concrete;
+  ConcreteRates in_concrete(fields.flow_index);
   for (int row = 0; row < grid.rows(); ++row)
     for (int ring = 0; ring < grid.rings; ++ring) {
       const auto cell = grid.index(ring, row);
       if (fields.fraction[cell] < nearly_full) continue;
       const double concrete = fields.fraction[cell] * grid.cell_volume(ring, row);
-      in_concrete.add(rate[cell], concrete, fields.flocculation, cell);
+      in_concrete.add(rate[cell], concrete, fields.structure, cell);
       if (!slip)
         gauges.layer.add(
             {grid.row_centre(row), grid.row_height(row), grid.row_height(row), concrete, rate[cell]});

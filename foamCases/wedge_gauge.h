@@ -10,15 +10,16 @@
 /// What is measured of a slump's fields on the wedge grid, scaled to the full circle.
 namespace flowrest::foam {
 
-/// Fields at one time, a value to a cell; the velocity is x (radial), y, z (upwards). The flocculation is
-/// empty where nothing flocculates.
+/// Fields at one time, a value to a cell; the velocity is x (radial), y, z (upwards). The structure is the part
+/// by which the yield stress passes tau0, empty where there is none.
 struct SlumpFields {
   std::vector<double> fraction;
   std::vector<double> velocity;
-  std::vector<double> flocculation = {};
+  std::vector<double> structure = {};
   /// 1/s, as the plug-in has it, which knows how far a wall with friction holds; where it is empty it is
   /// computed as `shear_rate` does.
   std::vector<double> shear_rate = {};
+  double flow_index = 1.0;  ///< of the concrete
 };
 
 /// What has nothing to read is `runs::nothing`.
@@ -29,7 +30,7 @@ struct SlumpGauges {
   double kinetic_energy = 0.0;            ///< J, of the concrete alone
   double shear_rate_p99 = runs::nothing;  ///< 1/s, the 99th percentile by volume over cells at least 90 %
                                           ///< full; nothing without any
-  /// 1/s, the same of the shear rate over 1 + flocculation: what overstresses the material.
+  /// 1/s, the same of runs::overstressing_rate: what overstresses the material.
   double overstressing_rate_p99 = runs::nothing;
   double base_shear_rate_p99 =
       runs::nothing;  ///< 1/s, at the base, the same by area under cells at least 90 % full; 0 where it slips

@@ -7,8 +7,10 @@
 #include <functional>
 #include <numbers>
 
+#include "foamCases/concrete_rates.h"
 #include "foamCases/test_scene.h"
 #include "runs/depth.h"
+#include "runs/rest.h"
 
 namespace flowrest::foam {
 namespace {
@@ -97,6 +99,35 @@ TEST(WedgeGauge, ACopyAHundredthAsLargeGivesTheSameNumbersScaled) {
   same(1e6 * small.volume, large.volume);
   same(0.1 * small.shear_rate_p99, large.shear_rate_p99);
   same(0.1 * small.base_shear_rate_p99, large.base_shear_rate_p99);
+}
+
+/// Rest is the overstress K rate^n / ((1 + structure) tau0) of the place. With n it is that of a rate less by the
+/// root of the structure, and not by the structure.
+TEST(ConcreteRates, AreOverstressedByTheRootOfTheStructure) {
+  for (const double n : {0.5, 1.0, 1.6}) {
+    auto scene = roussel_slump("elasto-viscoplastic");
+    scene.material.flow_index = n;
+    const runs::Rest rest(scene);
+    ConcreteRates rates(n);
+    const std::vector<double> structure = {3.0, 0.2};
+    rates.add(2.0, 1.0, structure, 0);
+    EXPECT_EQ(rates.percentile(), 2.0);
+    EXPECT_NEAR(rest.overstress(rates.overstressing_percentile()), rest.overstress(2.0, 3.0), 1e-13) << n;
+    EXPECT_NEAR(rest.overstress(2.0, 3.0), std::pow(2.0, n) / 4.0, 1e-14);
+  }
+}
+
+TEST(WedgeGauge, ReadsTheOverstressOfAPowerOfTheRate) {
+  const auto grid = grid_of_cells(0.01);
+  auto fields = filled_to(grid, [](double) { return 0.3; });
+  fields.shear_rate.assign(grid.cells(), 2.0);
+  fields.structure.assign(grid.cells(), 3.0);
+  for (const double n : {0.5, 1.0, 1.6}) {
+    fields.flow_index = n;
+    const auto gauges = gauge_slump(grid, fields, 2300.0, false);
+    EXPECT_EQ(gauges.shear_rate_p99, 2.0);
+    EXPECT_NEAR(gauges.overstressing_rate_p99, 2.0 / std::pow(4.0, 1.0 / n), 1e-14) << n;
+  }
 }
 
 TEST(WedgeGauge, WithoutConcreteItReadsNothingAndNotZero) {

@@ -49,7 +49,8 @@ std::span<const Column* const> every_column() {
                                      &column::time_step,
                                      &column::trapped_air,
                                      &column::volume_error,
-                                     &column::flocculation};
+                                     &column::flocculation,
+                                     &column::yield_stress};
   return all;
 }
 

@@ -208,6 +208,10 @@ inline constexpr Column volume_error = {
     .name = "volume_error", .unit = "", .meaning = "relative change of the volume since the start"};
 inline constexpr Column flocculation = {
     .name = "flocculation_mean", .unit = "", .meaning = "mean flocculation lambda, by mass"};
+inline constexpr Column yield_stress = {
+    .name = "yield_stress_mean_Pa",
+    .unit = "Pa",
+    .meaning = "mean local yield stress, with flocculation and what has grown with age, by mass"};
 
 }  // namespace column
 

@@ -10,8 +10,15 @@
 /// When material that can rest is at rest: one definition for every solver.
 namespace flowrest::runs {
 
+/// The rate at which material without structure would be overstressed as this is, 1/s: with the power n of its
+/// rate, rate / (1 + structure)^(1 / n). `structure`: the part by which the local yield stress passes tau0.
+inline double overstressing_rate(double shear_rate, double structure, double flow_index) {
+  return flow_index == 1.0 ? shear_rate / (1.0 + structure)
+                           : shear_rate / std::pow(1.0 + structure, 1.0 / flow_index);
+}
+
 /// Follows the overstress of the material: by what part its stress passes the yield stress where it shears,
-/// eta rate / ((1 + lambda) tau0) with the flocculation lambda of the place. What governs is its 99th
+/// K rate^n over the local yield stress, (1 + lambda) tau0 and what has grown with age. What governs is its 99th
 /// percentile by mass: the fastest of a hundred parts of the material, so that a single particle or cell in a
 /// film that dries up keeps nothing from resting.
 ///
@@ -27,10 +34,11 @@ class Rest {
   /// Whether its law can rest and it has a yield stress: a fluid is never at rest, and nothing bounds the
   /// growth of what has no yield stress.
   bool can_rest() const { return viscosity_over_yield_ > 0.0; }
-  /// Of a place that shears at this rate in 1/s and is flocculated so; 0 of material that cannot rest.
-  double overstress(double shear_rate, double flocculation = 0.0) const {
+  /// Of a place that shears at this rate in 1/s; 0 of material that cannot rest. `structure`: the part by which
+  /// its yield stress passes tau0, lambda and what has grown with age.
+  double overstress(double shear_rate, double structure = 0.0) const {
     const double power = flow_index_ == 1.0 ? shear_rate : std::pow(shear_rate, flow_index_);
-    return viscosity_over_yield_ * power / (1.0 + flocculation);
+    return viscosity_over_yield_ * power / (1.0 + structure);
   }
 
   /// `overstress` is the one that governs; `nothing` where there is none to read, which is no rest. s

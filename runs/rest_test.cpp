@@ -25,6 +25,23 @@ TEST(Rest, BoundsTheGrowthByTheOverstress) {
   EXPECT_FALSE(rest.rest_time());
 }
 
+/// Structure of the part s holds K rate^n over (1 + s): at a rate that is less by (1 + s)^(1/n), not by 1 + s.
+TEST(Rest, APowerOfTheRateFeelsStructureByItsRoot) {
+  for (const double n : {0.5, 1.0, 1.5}) {
+    auto scene = slump("elasto-viscoplastic");
+    scene.material.flow_index = n;
+    const Rest rest(scene);
+    for (const double structure : {0.0, 0.3, 3.0}) {
+      const double stress = 50.0 * std::pow(0.1, n);  // Pa, past yield
+      EXPECT_NEAR(rest.overstress(0.1, structure), stress / (50.0 * (1.0 + structure)), 1e-15);
+      EXPECT_NEAR(rest.overstress(overstressing_rate(0.1, structure, n)), rest.overstress(0.1, structure),
+                  1e-14)
+          << n << " " << structure;
+    }
+  }
+  EXPECT_EQ(overstressing_rate(0.1, 0.3, 1.0), 0.1 / 1.3);
+}
+
 TEST(Rest, IsBelievedOnlyOnceItHasLasted) {
   Rest rest(slump("elasto-viscoplastic"));
   rest.add(0.05, 0.0);  // nothing has moved yet

@@ -16,11 +16,12 @@ namespace {
 
 /// Columns of histories that say something of the flow.
 const std::vector<std::string> columns = {
-    "spread_mm",          "spread_1p5_mm",      "spread_6_mm",       "spread_mass_995_mm",
-    "height_mm",          "plug_velocity_m_s",  "mean_velocity_m_s", "volume_m3",
-    "kinetic_energy_J",   "potential_energy_J", "elastic_energy_J",  "dissipated_energy_J",
-    "numerical_energy_J", "shear_rate_p99_1_s", "flocculation_mean", "front_mm",
-    "start_height_mm",    "end_height_mm",      "thinnest_sight_mm", "discharged_fraction"};
+    "spread_mm",           "spread_1p5_mm",      "spread_6_mm",       "spread_mass_995_mm",
+    "height_mm",           "plug_velocity_m_s",  "mean_velocity_m_s", "volume_m3",
+    "kinetic_energy_J",    "potential_energy_J", "elastic_energy_J",  "dissipated_energy_J",
+    "numerical_energy_J",  "shear_rate_p99_1_s", "flocculation_mean", "front_mm",
+    "start_height_mm",     "end_height_mm",      "thinnest_sight_mm", "discharged_fraction",
+    "yield_stress_mean_Pa"};
 /// Moments, which are of the whole run.
 const std::vector<std::string> moments = {"rest_time_s", "arrival_s", "light_s"};
 const std::vector<std::string> differences = {"profile_l1", "profile_l2"};

@@ -12,8 +12,12 @@ namespace {
 /// Sums that every body has.
 class Sums {
  public:
-  Sums(const scenes::Scene& scene, double factor, const runs::Rest& rest, std::size_t particles)
-      : gravity_(scene.forces.gravity), density_(scene.material.density), factor_(factor), rest_(rest) {
+  Sums(const scenes::Scene& scene, double factor, const runs::Rest& rest, std::size_t particles, double time)
+      : gravity_(scene.forces.gravity),
+        density_(scene.material.density),
+        factor_(factor),
+        grown_(scene.grown_over_yield_stress(time)),
+        rest_(rest) {
     rates_.reserve(particles);
     // Without flocculation the overstress of all is in proportion to their shear rate.
     flocculates_ = scene.thixotropy && rest.can_rest();
@@ -31,7 +35,8 @@ class Sums {
       volume_ += b.volume[i];
       rates_.emplace_back(b.rate[i], b.mass[i]);
       if (!b.flocculation.empty()) flocculation_ += b.mass[i] * b.flocculation[i];
-      if (flocculates_) overstresses_.emplace_back(rest_.overstress(b.rate[i], b.flocculation[i]), b.mass[i]);
+      if (flocculates_)
+        overstresses_.emplace_back(rest_.overstress(b.rate[i], b.flocculation[i] + grown_), b.mass[i]);
       highest_ = std::max(highest_, b.position[vertical][i]);
     }
   }
@@ -53,6 +58,7 @@ class Sums {
 
  private:
   double gravity_, density_, factor_;
+  double grown_;  ///< with age, over tau0
   const runs::Rest& rest_;
   bool flocculates_ = false;
   double kinetic_ = 0.0, potential_ = 0.0, elastic_ = 0.0, mass_ = 0.0, volume_ = 0.0, flocculation_ = 0.0;
@@ -96,13 +102,15 @@ Measures Gauges::measure(Solver& solver, double time) const {
   Layer layer(scene_, held_walls_, cell_);
   const auto gauge = body_gauge({scene_, pieces_, cell_, vertical, time});
   gauge->begin(solver);
-  Sums sums(scene_, pieces_.whole_over_computed, rest_, solver.particle_count());
+  Sums sums(scene_, pieces_.whole_over_computed, rest_, solver.particle_count(), time);
   solver.visit([&](const ParticleBatch& b) {
     sums.add(b, vertical);
     layer.add(b, vertical);
     gauge->add(b);
   });
   Measures m = sums.finish();
+  if (laws::has_yield_stress(scene_.material.model))
+    m.yield_stress_mean = scene_.local_yield_stress(m.flocculation_mean, time);
   m.body = gauge->finish();
   m.layer = layer.finish();
   return m;
@@ -124,7 +132,7 @@ runs::Row Gauges::row(double time, double step, const Measures& m, const runs::R
       .add(shear_rate, m.shear_rate_p99)
       .add(layer)
       .add(time_step, step);
-  if (scene_.thixotropy) row.add(flocculation, m.flocculation_mean);
+  if (scene_.thixotropy) row.add(flocculation, m.flocculation_mean).add(yield_stress, m.yield_stress_mean);
   return row;
 }
 

@@ -28,8 +28,9 @@ struct Measures {
   double overstress_p99 = 0.0;  ///< exceeded by one per cent of the mass (runs/rest.h)
   runs::ShearedLayer layer;     ///< along the walls
   double flocculation_mean = 0.0;
-  double highest = 0.0;  ///< m
-  BodyReading body;      ///< what the apparatus is judged by
+  double yield_stress_mean = 0.0;  ///< Pa, of what is thixotropic
+  double highest = 0.0;            ///< m
+  BodyReading body;                ///< what the apparatus is judged by
 };
 
 /// Measures a scene's particles and lays the results out as rows of history.csv.

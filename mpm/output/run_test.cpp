@@ -174,8 +174,42 @@ TEST_F(MpmRun, ThixotropyAddsItsColumn) {
   const auto run = run_and_read(
       tiny_slump({"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
                   "thixotropy.initial_flocculation=1.8", "time.end=0.05"}));
-  EXPECT_EQ(run.history.names.back(), "flocculation_mean");
+  EXPECT_EQ(run.history.names.end()[-2], "flocculation_mean");
+  EXPECT_EQ(run.history.names.back(), "yield_stress_mean_Pa");
   EXPECT_NEAR(run.history.at("flocculation_mean")[0], 1.8, 1e-12);
+  for (std::size_t i = 0; i < run.history.rows(); ++i)
+    EXPECT_NEAR(run.history.at("yield_stress_mean_Pa")[i],
+                50.0 * (1.0 + run.history.at("flocculation_mean")[i]), 1e-9);
+}
+
+/// Loaded below what it holds it only ages: tau0 (1 + lambda0) + A_thix t + A t_c (exp(t / t_c) - 1).
+TEST_F(MpmRun, TheYieldStressGrowsAtRestAsTheClosedFormSays) {
+  for (const char* model : {"elasto-viscoplastic", "papanastasiou"}) {
+    auto scene = tiny_slump({"thixotropy.flocculation_rate=39", "thixotropy.deflocculation_coefficient=0",
+                             "thixotropy.initial_flocculation=80", "thixotropy.ageing_rate=700",
+                             "thixotropy.ageing_time=0.2", "thixotropy.initial_age=0.05", "time.end=0.2",
+                             std::string("material.model=") + model, "runs.mpm=" + std::string(model)});
+    const auto run = run_and_read(scene);
+    const auto& time = run.history.at("time_s");
+    ASSERT_GT(run.history.rows(), 3u);
+    for (std::size_t i = 0; i < time.size(); ++i)
+      EXPECT_NEAR(run.history.at("yield_stress_mean_Pa")[i],
+                  50.0 * 81.0 + 39.0 * time[i] + 700.0 * 0.2 * std::expm1((0.05 + time[i]) / 0.2), 1e-8)
+          << model << " at " << time[i];
+  }
+}
+
+/// A slump that ages faster spreads less: the solver feels what the column says.
+TEST_F(MpmRun, WhatAgesSpreadsLess) {
+  const std::vector<std::string> flocs = {"thixotropy.flocculation_rate=0",
+                                          "thixotropy.deflocculation_coefficient=0",
+                                          "thixotropy.initial_flocculation=0", "time.end=0.4"};
+  const auto spread_with = [&](const std::string& rate, const std::string& name) {
+    auto set = with(flocs, {"thixotropy.ageing_rate=" + rate});
+    run(tiny_slump(set), options(name));
+    return runs::read_run(folder / name).history.at("spread_mm").back();
+  };
+  EXPECT_LT(spread_with("2000", "aged"), spread_with("0", "ageless") - 10.0);
 }
 
 TEST_F(MpmRun, ADuctHasItsOwnGauges) {
@@ -251,7 +285,10 @@ class ResumedRun : public RunTest,
                                     "mpm.precision=" + precision};
     if (model != "elasto-viscoplastic") return set;
     return with(set, {"thixotropy.flocculation_rate=0.39", "thixotropy.deflocculation_coefficient=0.15",
-                      "thixotropy.initial_flocculation=1.8"});
+                      "thixotropy.initial_flocculation=1.8", "thixotropy.ageing_rate=50",
+                      "thixotropy.ageing_time=0.7", "thixotropy.initial_age=0.1",
+                      scheme == "linear-flip" ? "thixotropy.breakdown_exponent=0.6"
+                                              : "thixotropy.breakdown_exponent=1"});
   }
 };
 
