@@ -261,6 +261,19 @@ TEST(CaseFiller, TellsThePlugInEverythingOfTheLaw) {
         "wetting             geometric;", "historyObjects      (alpha.concrete U flocculation);",
         "rheologyLibraries   (\"$FOAM_CASE/libflowrestRheology.so\");"})
     EXPECT_THAT(text, HasSubstr(entry));
+  for (const char* entry : {"breakdownExponent", "ageingRate", "ageingTime", "initialAge"})
+    EXPECT_THAT(text, ::testing::Not(HasSubstr(entry))) << "what a scene does not have";
+  const std::vector<std::string> aged = {
+      "thixotropy.flocculation_rate=0.39",   "thixotropy.deflocculation_coefficient=0.15",
+      "thixotropy.initial_flocculation=1.8", "thixotropy.breakdown_exponent=0.7",
+      "thixotropy.ageing_rate=0.02",         "thixotropy.ageing_time=3000",
+      "thixotropy.initial_age=600"};
+  for (const char* model : {"papanastasiou", "elasto-viscoplastic"})
+    EXPECT_THAT(scene_parameters(roussel_slump(model, aged), true),
+                ::testing::AllOf(HasSubstr("breakdownExponent           0.7;"),
+                                 HasSubstr("ageingRate                  0.02;  // Pa/s"),
+                                 HasSubstr("ageingTime                  3000;  // s"),
+                                 HasSubstr("initialAge                  600;  // s")));
   EXPECT_THAT(scene_parameters(roussel_slump("bi-viscous", {"foam.mixing=mass-weighted"}), true),
               ::testing::AllOf(HasSubstr("transportModel      biViscousBingham;"),
                                HasSubstr("criticalShearRate     0.01;"), HasSubstr("massWeighted;"),

@@ -97,6 +97,24 @@ std::string mixing_name(FoamMixing mixing) {
   return mixing == FoamMixing::mass_weighted ? "massWeighted" : scenes::to_string(mixing);
 }
 
+/// Flocs, and where the scene has them breakdown by another power than 1 and growth with age.
+std::string structure_coefficients(const scenes::Thixotropy& thixotropy, const std::string& indent) {
+  std::string text = fmt::format(
+      "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
+      "{0}    deflocculationCoefficient   {2};\n{0}    initialFlocculation         {3};\n",
+      indent, thixotropy.flocculation_rate, thixotropy.deflocculation_coefficient,
+      thixotropy.initial_flocculation);
+  if (thixotropy.breakdown_exponent != 1.0)
+    text += fmt::format("{}    breakdownExponent           {};\n", indent, thixotropy.breakdown_exponent);
+  if (thixotropy.ageing_rate != 0.0) {
+    text += fmt::format("{}    ageingRate                  {};  // Pa/s\n", indent, thixotropy.ageing_rate);
+    if (thixotropy.ageing_time)
+      text += fmt::format("{}    ageingTime                  {};  // s\n", indent, *thixotropy.ageing_time);
+    text += fmt::format("{}    initialAge                  {};  // s\n", indent, thixotropy.initial_age);
+  }
+  return text + indent + "}\n";
+}
+
 /// What every law of the plug-in is told.
 std::string common_coefficients(const Scene& scene, const std::string& indent) {
   const auto& material = scene.material;
@@ -104,12 +122,7 @@ std::string common_coefficients(const Scene& scene, const std::string& indent) {
       fmt::format("{0}yieldStress         {1};  // Pa\n{0}plasticViscosity    {2};  // Pa s{3}\n", indent,
                   laws::has_yield_stress(material.model) ? material.yield_stress : 0.0,
                   material.plastic_viscosity, material.flow_index == 1.0 ? "" : "^n");
-  if (carries_flocculation(scene))
-    text += fmt::format(
-        "{0}thixotropy\n{0}{{\n{0}    flocculationRate            {1};  // A_thix, Pa/s\n"
-        "{0}    deflocculationCoefficient   {2};\n{0}    initialFlocculation         {3};\n{0}}}\n",
-        indent, scene.thixotropy->flocculation_rate, scene.thixotropy->deflocculation_coefficient,
-        scene.thixotropy->initial_flocculation);
+  if (carries_flocculation(scene)) text += structure_coefficients(*scene.thixotropy, indent);
   text += fmt::format("{}mixing              {};\n", indent, mixing_name(scene.foam.mixing));
   if (scene.foam.mixing == FoamMixing::saturating)
     text += fmt::format("{}fullAt              {};\n", indent, scene.foam.full_at);

@@ -144,6 +144,41 @@ TEST_F(OneCell, FlocculationDecaysInFlowAndGrowsAtRest) {
   EXPECT_NEAR(field("flocculation", 1)[0], lambda + 0.39 * (time() - begin), 1e-9);
 }
 
+/// With the power m of the rate: exp(-alpha rate^m t), to A_thix / (tau0 alpha rate^m).
+TEST_F(OneCell, FlocculationDecaysByAPowerOfTheRate) {
+  const double rate = 2.0;
+  for (const double m : {0.5, 1.7}) {
+    auto set = with(thixotropy, "foam.max_time_step=0.002");
+    set.push_back(fmt::format("thixotropy.breakdown_exponent={}", m));
+    shear(scene("papanastasiou", 1.0, set), rate);
+    const double fall = 0.6 * std::pow(rate, m), balance = 0.39 / fall;
+    const double expected = balance + (1.8 - balance) * std::exp(-fall * time());
+    EXPECT_NEAR(field("flocculation", 1)[0], expected, 2e-3 * expected) << m;
+    fs::remove_all(case_);
+  }
+}
+
+const std::vector<std::string> ageing = {"thixotropy.ageing_rate=25", "thixotropy.ageing_time=2",
+                                         "thixotropy.initial_age=0.5"};
+/// Pa, that the yield stress has grown by.
+double grown(double time) { return 25.0 * 2.0 * std::expm1((0.5 + time) / 2.0); }
+
+/// Perrot's growth adds to what flocs hold, whatever the flow has broken down.
+TEST_F(OneCell, AgeAddsToTheYieldStressOfFluids) {
+  const double rate = 2.0;
+  auto set = with(thixotropy, "foam.max_time_step=0.002");
+  set.insert(set.end(), ageing.begin(), ageing.end());
+  for (const char* model : {"papanastasiou", "bi-viscous"}) {
+    const auto aged = scene(model, 1.0, set);
+    shear(aged, rate);
+    const double lambda = field("flocculation", 1)[0], full = (1.0 + lambda) * yield + grown(time());
+    const double regularised = std::string(model) == "papanastasiou" ? -std::expm1(-10.0 * rate) : 1.0;
+    EXPECT_NEAR(field("nu1", 1)[0] * density, viscosity + full * regularised / rate, 1e-4) << model;
+    EXPECT_GT(grown(time()), 50.0) << "enough to be seen";
+    fs::remove_all(case_);
+  }
+}
+
 /// Sheared for long past yield: tau0 + K rate^n.
 TEST_F(OneCell, TheElastoViscoplasticStressHasThePowerOfTheRate) {
   const double rate = 0.1, modulus = 1e4;
@@ -201,6 +236,26 @@ TEST_F(OneCell, TheElastoViscoplasticLawCarriesFlocculation) {
   const double tau = std::sqrt(0.5 * (stress[0] * stress[0] + stress[3] * stress[3] + stress[5] * stress[5]) +
                                stress[1] * stress[1]);
   EXPECT_NEAR(tau, (1.0 + lambda) * yield + viscosity * field("plasticShearRate", 1)[0], 1e-6 * tau);
+}
+
+/// The same return with breakdown by a power of the rate, and with age, which flow leaves.
+TEST_F(OneCell, TheElastoViscoplasticLawAgesAndBreaksDownByAPower) {
+  const double rate = 2.0;
+  for (const double m : {0.5, 1.7}) {
+    auto set = with(thixotropy, "foam.max_time_step=0.001");
+    set.insert(set.end(), ageing.begin(), ageing.end());
+    set.push_back(fmt::format("thixotropy.breakdown_exponent={}", m));
+    shear(scene("elasto-viscoplastic", 1.0, set), rate);
+    const double lambda = field("flocculation", 1)[0], flow = field("plasticShearRate", 1)[0];
+    const double fall = 0.6 * std::pow(rate, m), balance = 0.39 / fall;
+    EXPECT_NEAR(lambda, balance + (1.8 - balance) * std::exp(-fall * time()), 2e-2 * lambda) << m;
+    const auto stress = field("stress", 6);
+    const double tau =
+        std::sqrt(0.5 * (stress[0] * stress[0] + stress[3] * stress[3] + stress[5] * stress[5]) +
+                  stress[1] * stress[1]);
+    EXPECT_NEAR(tau, (1.0 + lambda) * yield + grown(time()) + viscosity * flow, 1e-6 * tau) << m;
+    fs::remove_all(case_);
+  }
 }
 
 }  // namespace

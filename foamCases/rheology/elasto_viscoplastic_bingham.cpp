@@ -95,7 +95,10 @@ void elastoViscoplasticBingham::carry() const {
   carried_.primitiveFieldRef() = stress_.primitiveField();
   const volSymmTensorField old(carried_);
   flowrest::rheology::carry_with_concrete(phase_, old, carried_);
-  if (flocculation_) flocculation_->carry();
+  if (flocculation_) {
+    flocculation_->carry();
+    grown_ = flocculation_->grown();
+  }
 
   const scalar dt = runTime_.deltaTValue();
   const auto gradient = phase_.velocity_gradient(rules_.strain_rate);
@@ -131,8 +134,8 @@ elastoViscoplasticBingham::Returned elastoViscoplasticBingham::relaxed(const sym
   const scalar dt = runTime_.deltaTValue(), shear = shear_modulus_.value() * dt;
   const symmTensor trial = carried + 2.0 * shear * dev(symm(gradient));  // Yu et al. 2026, Eq. 37
   const scalar tau = std::sqrt(0.5) * mag(trial);
-  const auto back =
-      flowrest::laws::ElastoViscoplastic::relax<scalar>(law_, structure_, {tau, shear}, dt, flocculation);
+  const auto back = flowrest::laws::ElastoViscoplastic::relax<scalar>(law_, structure_, {tau, shear}, dt,
+                                                                      flocculation, grown_);
   const scalar kept = tau > VSMALL ? back.stress / tau : 1.0;
   return {kept * trial, back.rate, kept * shear, back.flocculation};
 }

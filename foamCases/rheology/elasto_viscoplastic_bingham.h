@@ -86,6 +86,7 @@ class elastoViscoplasticBingham : public incompressible::laminarModel {
   volSymmTensorField stress_;  ///< after the last completed step
   volScalarField plastic_rate_;
   mutable volSymmTensorField carried_;  ///< at the new time, before the step's strain
+  mutable scalar grown_ = 0.0;          ///< Pa, of the yield stress with age, at the new time
 };
 
 }  // namespace laminarModels

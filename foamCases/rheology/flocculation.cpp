@@ -51,13 +51,19 @@ Flocculation::Flocculation(const ConcretePhase& phase, const dictionary& dict,
                            const dimensionedScalar& yield_stress)
     : phase_(phase),
       structure_{(dimensionedScalar("flocculationRate", dimPressure / dimTime, dict) / yield_stress).value(),
-                 dict.get<scalar>("deflocculationCoefficient")},
+                 dict.get<scalar>("deflocculationCoefficient"),
+                 dict.getOrDefault<scalar>("breakdownExponent", 1.0)},
+      ageing_{dict.getOrDefault<scalar>("ageingRate", 0.0),
+              dict.found("ageingTime") ? 1.0 / dict.get<scalar>("ageingTime") : 0.0,
+              dict.getOrDefault<scalar>("initialAge", 0.0)},
       field_(IOobject("flocculation", phase.mesh().time().timeName(), phase.mesh(), IOobject::READ_IF_PRESENT,
                       IOobject::AUTO_WRITE),
              phase.mesh(), dimensionedScalar("initialFlocculation", dimless, dict),
              zeroGradientFvPatchScalarField::typeName) {
   field_.oldTime();
 }
+
+scalar Flocculation::grown() const { return ageing_.grown(phase_.mesh().time().value()); }
 
 void Flocculation::carry() {
   const Time& time = phase_.mesh().time();

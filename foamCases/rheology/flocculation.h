@@ -6,17 +6,21 @@
 namespace flowrest::rheology {
 
 /// Roussel's flocculation state lambda (Yu et al. 2026, Eqs. 11 and 12), d lambda / dt = A_thix / tau0 -
-/// alpha rate lambda, carried along with the concrete: what is conserved is its integral over the concrete,
-/// so that air neither thins it nor adds to it. Written as the field `flocculation`.
+/// alpha rate^m lambda, carried along with the concrete: what is conserved is its integral over the concrete,
+/// so that air neither thins it nor adds to it. Written as the field `flocculation`. With it what the yield
+/// stress grows by with age, which is that of all the concrete (laws/structure.h).
 class Flocculation {
  public:
   /// Reads `flocculationRate` (Pa/s), `deflocculationCoefficient` and `initialFlocculation` from the
-  /// dictionary; the field itself from the start time where it is there.
+  /// dictionary, and where it has them `breakdownExponent`, `ageingRate` (Pa/s), `ageingTime` (s) and
+  /// `initialAge` (s); the field itself from the start time where it is there.
   Flocculation(const ConcretePhase&, const Foam::dictionary&, const Foam::dimensionedScalar& yield_stress);
 
   const Foam::volScalarField& field() const { return field_; }
   Foam::volScalarField& field() { return field_; }
   const laws::Structure<Foam::scalar>& structure() const { return structure_; }
+  /// What the yield stress has grown by with age at the step's end, Pa.
+  Foam::scalar grown() const;
 
   /// lambda carried to the new time without growth or breakdown. Starts from the old time however often it is
   /// called in a step; before the first step it changes nothing.
@@ -27,6 +31,7 @@ class Flocculation {
  private:
   const ConcretePhase& phase_;
   laws::Structure<Foam::scalar> structure_;
+  laws::Ageing<Foam::scalar> ageing_;
   Foam::volScalarField field_;
 };
 

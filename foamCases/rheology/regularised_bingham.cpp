@@ -45,7 +45,9 @@ RegularisedBingham::RegularisedBingham(const word& name, const dictionary& prope
 tmp<volScalarField> RegularisedBingham::yield_stress(const volScalarField& rate) {
   if (!flocculation_) return volScalarField::New("yieldStress", phase_.mesh(), yield_stress_);
   flocculation_->advance(rate);
-  return yield_stress_ * (1.0 + flocculation_->field());  // Yu et al. 2026, Eq. 11
+  // Yu et al. 2026, Eq. 11
+  return yield_stress_ * (1.0 + flocculation_->field()) +
+         dimensionedScalar("grown", dimPressure, flocculation_->grown());
 }
 
 void RegularisedBingham::correct() {
