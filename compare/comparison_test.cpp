@@ -517,6 +517,8 @@ TEST_F(ComparisonTest, AnLBoxHasAnArrestedShapeForTheStructureItEndsWith) {
   EXPECT_THAT(refusal(box(), 4.4), HasSubstr("it would fill the opening (150 mm)"));
   EXPECT_THAT(refusal(box({"walls.base=slip"}), 0.5), HasSubstr("hold nothing"));
   EXPECT_THAT(refusal(scenes::load_scene("roussel-slump"), 0.5), HasSubstr("not thixotropic"));
+  EXPECT_THAT(refusal(scenes::load_scene("mix-a-slump-sf0", {{"thixotropy.ageing_rate=0.01"}, {}}), 0.5),
+              HasSubstr("grows with age (thixotropy.ageing_rate)"));
   EXPECT_FALSE(fs::exists(folder / "refused"));
 
   const auto written = exact::write_exact_runs(box(), folder / "exact", 0.5);

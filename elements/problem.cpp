@@ -42,10 +42,12 @@ void check_walls_and_forces(const scenes::Scene& scene) {
 void check_material(const scenes::Scene& scene) {
   if (!(scene.material.plastic_viscosity > 0.0)) refuse(scene, "material.plastic_viscosity = 0", "above 0");
   if (scene.thixotropy &&
-      (scene.thixotropy->flocculation_rate != 0.0 || scene.thixotropy->deflocculation_coefficient != 0.0))
+      (scene.thixotropy->flocculation_rate != 0.0 || scene.thixotropy->deflocculation_coefficient != 0.0 ||
+       scene.thixotropy->ageing_rate != 0.0))
     refuse(scene, "structure that grows or breaks down ([thixotropy])",
-           "no [thixotropy], or one with thixotropy.flocculation_rate = 0 and "
-           "thixotropy.deflocculation_coefficient = 0, whose structure stays what it is at the start");
+           "no [thixotropy], or one with thixotropy.flocculation_rate = 0, "
+           "thixotropy.deflocculation_coefficient = 0 and thixotropy.ageing_rate = 0, whose structure stays "
+           "what it is at the start");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "elements/run.h"
 #include "runs/errors.h"
 #include "runs/temporary_folder.h"
@@ -51,6 +53,22 @@ TEST(Problem, TakesStructureThatStaysAsItIs) {
   EXPECT_EQ(elements::problem_of(scene).flow.parameters.yield_stress, 75.0);
 }
 
+/// The rate at which flow resists as much as the local yield stress holds: K rate^n = (1 + lambda) tau0, from
+/// which the rounding at rest follows.
+TEST(Problem, RoundsByTheRootOfTheLocalYieldStress) {
+  const std::string structure =
+      "[thixotropy]\nflocculation_rate = 0\ndeflocculation_coefficient = 0\ninitial_flocculation = 3\n";
+  for (const double n : {0.5, 1.0, 1.5}) {
+    auto scene = scenes::parse_scene(slump_text + structure, "slump.toml");
+    scene.material.flow_index = n;
+    scene.material.plastic_viscosity = 100.0;
+    scene.time.end = 1e-3;
+    EXPECT_NEAR(elements::resolution_of(elements::problem_of(scene), 60).rounding,
+                1e-3 * std::pow(4.0 * 50.0 / 100.0, 1.0 / n), 1e-12)
+        << n;
+  }
+}
+
 TEST(Problem, RefusesWhatTheElementsDoNotServe) {
   const auto says = [](const std::string& what, const std::string& allowed) {
     return AllOf(HasSubstr("wrong.toml: the finite elements do not compute " + what),
@@ -68,4 +86,7 @@ TEST(Problem, RefusesWhatTheElementsDoNotServe) {
       complaint(slump_text + "[thixotropy]\nflocculation_rate = 0.1\ndeflocculation_coefficient = 0.01\n"
                              "initial_flocculation = 0.5\n"),
       says("structure that grows or breaks down", "no [thixotropy]"));
+  EXPECT_THAT(complaint(slump_text + "[thixotropy]\nflocculation_rate = 0\ndeflocculation_coefficient = 0\n"
+                                     "initial_flocculation = 0.5\nageing_rate = 0.01\n"),
+              says("structure that grows or breaks down", "no [thixotropy]"));
 }

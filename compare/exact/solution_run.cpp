@@ -19,6 +19,11 @@ Bingham material_of(const Scene& scene, std::optional<double> flocculation) {
         scene,
         "a thixotropic yield stress changes with the flow's history; --flocculation gives what it is in the "
         "end, such as the last flocculation_mean of a run");
+  if (scene.thixotropy && scene.thixotropy->ageing_rate != 0.0)
+    refuse(
+        scene,
+        "its yield stress grows with age (thixotropy.ageing_rate), so that none is that of its end; allowed: "
+        "thixotropy.ageing_rate = 0, and in material.yield_stress what has grown");
   if (flocculation && !scene.thixotropy)
     refuse(scene, "--flocculation is given, and its material is not thixotropic");
   if (flocculation && !(*flocculation >= 0.0 && std::isfinite(*flocculation)))

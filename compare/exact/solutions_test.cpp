@@ -155,6 +155,23 @@ TEST(DuctFlow, StoppingTimeBound) {
               stopping_time_bound({2000.0, 100.0, 1e-9}, 0.5, 360.0, start), 1e-6);
 }
 
+/// A power of the rate only adds to what stops: its bound leaves the viscosity out, and holds for every flow of
+/// that law. A plug that slows with no viscosity at all needs exactly norm / b.
+TEST(DuctFlow, StoppingTimeBoundOfAPowerIsThatWithoutViscosity) {
+  for (const double n : {0.5, 1.4}) {
+    const Bingham power{2000.0, 100.0, 30.0, n}, inviscid{2000.0, 100.0, 0.0};
+    const double start = DuctFlow{power, 0.5, 2000.0}.l2_norm();
+    EXPECT_GT(start, 0.0);
+    EXPECT_DOUBLE_EQ(stopping_time_bound(power, 0.5, 360.0, start),
+                     start * 2000.0 * std::sqrt(0.5) / (2.0 * (100.0 - 0.5 * 360.0 * 0.5)))
+        << n;
+    EXPECT_NEAR(stopping_time_bound(power, 0.5, 360.0, start),
+                stopping_time_bound(inviscid, 0.5, 360.0, start), 1e-12);
+    EXPECT_GT(stopping_time_bound(power, 0.5, 360.0, start),
+              stopping_time_bound({2000.0, 100.0, 30.0}, 0.5, 360.0, start));
+  }
+}
+
 TEST(Creep, TheFlowCurveInverts) {
   for (const auto law : {Law::papanastasiou, Law::bi_viscous})
     for (const double m : {0.0, 10.0, 1e4})
