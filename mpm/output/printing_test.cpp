@@ -85,7 +85,8 @@ TEST_F(Print, ACornerIsPrintedAlongBothItsLegs) {
   const double fed = bore_area * extrusion * 2.4;
   EXPECT_NEAR(run.history.at("volume_at_rest_m3").back(), fed, 1e-9 * fed);
   EXPECT_TRUE(std::isnan(run.history.at("strand_width_mm").back()));
-  // The corner is symmetric but for time: by then half of the weight lies along either leg.
+  // Beyond the corner's own square there is a good part of it on either leg, the more on the later one: what
+  // fills the gap under the nozzle goes along with it.
   std::array<double, 2> beyond{};
   const auto checkpoint = read_checkpoint(folder / "run");
   ASSERT_TRUE(checkpoint);
@@ -94,7 +95,10 @@ TEST_F(Print, ACornerIsPrintedAlongBothItsLegs) {
     if (x < 0.086 - 0.018) beyond[0] += 1.0;
     if (y > 0.018) beyond[1] += 1.0;
   }
-  EXPECT_NEAR(beyond[0] / beyond[1], 1.0, 0.25);
+  const auto all = static_cast<double>(checkpoint->solver.cells.size());
+  EXPECT_GT(beyond[0], 0.15 * all);
+  EXPECT_GT(beyond[1], beyond[0]);
+  EXPECT_LT(beyond[0] + beyond[1], all);
 }
 
 TEST_F(Print, ASecondLayerLiesOnTheFirst) {

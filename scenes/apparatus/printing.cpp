@@ -206,10 +206,16 @@ void Printing::check_path(const Case& c) const {
   if (path.empty()) return;
   if (c.given.gives("process.path") && c.given.gives("process.gcode"))
     c.fault("process.gcode", "process.gcode is given beside process.path; allowed: one of them");
-  for (const char* key :
-       {"process.printing_velocity", "process.pause", "geometry.layers", "geometry.layer_height",
-        "geometry.layer_length", "geometry.direction", "geometry.nozzle_gap"})
-    if (c.given.gives(key))
+  // What a run keeps of its settings has these keys with what is usual.
+  const Printing usual;
+  for (const auto& [key, differs] : {std::pair{"process.printing_velocity", !printing_velocity.empty()},
+                                     std::pair{"process.pause", pause != usual.pause},
+                                     std::pair{"geometry.layers", layers != usual.layers},
+                                     std::pair{"geometry.layer_height", layer_height.has_value()},
+                                     std::pair{"geometry.layer_length", layer_length != usual.layer_length},
+                                     std::pair{"geometry.direction", direction != usual.direction},
+                                     std::pair{"geometry.nozzle_gap", nozzle_gap != usual.nozzle_gap}})
+    if (c.given.gives(key) && differs)
       c.fault(key, fmt::format("{} is given beside a path, which says it; allowed: not with process.path or "
                                "process.gcode",
                                key));

@@ -113,7 +113,7 @@ struct PrintedCode : testing::Test {
            "\"part.gcode\"\n"
         << more
         << "[material]\nmodel = \"elasto-viscoplastic\"\ndensity = 2100\nyield_stress = 630\nplastic_viscosity "
-           "= 7.5\nyoungs_modulus = 1e5\n[time]\nend = 5\n[mpm]\ncell = 0.005\n";
+           "= 7.5\nyoungs_modulus = 1e5\npoisson_ratio = 0.45\n[time]\nend = 5\n[mpm]\ncell = 0.005\n";
     return load_scene((folder / "part.toml").string());
   }
   std::filesystem::path folder;
