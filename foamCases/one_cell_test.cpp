@@ -144,7 +144,7 @@ TEST_F(OneCell, FlocculationDecaysInFlowAndGrowsAtRest) {
   EXPECT_NEAR(field("flocculation", 1)[0], lambda + 0.39 * (time() - begin), 1e-9);
 }
 
-/// With the power m of the rate: exp(-alpha rate^m t), to A_thix / (tau0 alpha rate^m).
+/// With the power m of the rate: exp(-alpha rate^m t), to A_thix / (tau0 alpha rate^m); to first order in the step.
 TEST_F(OneCell, FlocculationDecaysByAPowerOfTheRate) {
   const double rate = 2.0;
   for (const double m : {0.5, 1.7}) {
@@ -153,7 +153,7 @@ TEST_F(OneCell, FlocculationDecaysByAPowerOfTheRate) {
     shear(scene("papanastasiou", 1.0, set), rate);
     const double fall = 0.6 * std::pow(rate, m), balance = 0.39 / fall;
     const double expected = balance + (1.8 - balance) * std::exp(-fall * time());
-    EXPECT_NEAR(field("flocculation", 1)[0], expected, 2e-3 * expected) << m;
+    EXPECT_NEAR(field("flocculation", 1)[0], expected, 3e-3 * expected) << m;
     fs::remove_all(case_);
   }
 }
