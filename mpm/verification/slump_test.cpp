@@ -80,7 +80,7 @@ scenes::Scene coarse_slump(const std::vector<std::string>& more = {}) {
 }  // namespace
 
 // Produced by the run that ComesToRestWhereItDidWhenThisWasWritten makes.
-constexpr double stored_spread_mm = 546.31, stored_height_mm = 41.98, stored_rest_s = 30.85;
+constexpr double stored_spread_mm = 546.31, stored_height_mm = 44.03, stored_rest_s = 30.85;
 
 class Slump : public RunTest {};
 
