@@ -9,6 +9,7 @@
 #include "laws/law.h"
 #include "runs/command.h"
 #include "runs/gauges.h"
+#include "runs/material_state.h"
 #include "runs/run_directory.h"
 #include "scenes/pieces.h"
 #include "scenes/plausibility.h"
@@ -117,16 +118,20 @@ bool holds_nothing(const fs::path& directory) {
                      [](const auto& entry) { return entry.path().filename() == FolderLock::file_name; });
 }
 
+std::string start_in_words(const std::string& from) { return from.empty() ? "its scene's body" : from; }
+
 /// In which way another run differs from the one that is asked for; empty where it does not.
 std::string differences(const Json& made, const Json& asked, const Json& beside) {
   const std::string solver = asked.at("solver");
   if (made.value("solver", "") != solver)
     return fmt::format("solver is {} there and {} here", made.value("solver", "not given"), solver);
   std::string words = settings_differ(solver, made.value("settings", Json()), asked.at("settings"));
+  const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if (const std::string there = started_from(made), here = started_from(asked); there != here)
+    add(fmt::format("it starts from {} there and {} here", start_in_words(there), start_in_words(here)));
   for (const auto& [key, value] : beside.items())
-    if (const Json there = made.value(key, Json()); there != value)
-      words += fmt::format("{}{} is {} there and {} here", words.empty() ? "" : ", ", key,
-                           value_in_words(&there), value_in_words(&value));
+    if (const Json there = made.value(key, Json()); key != started_from_key && there != value)
+      add(fmt::format("{} is {} there and {} here", key, value_in_words(&there), value_in_words(&value)));
   return words;
 }
 
@@ -181,8 +186,11 @@ std::string settings_differ(const std::string& solver, const Json& made, const J
   return fmt::format("{}{}", fmt::join(words, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-Standing standing_in(const fs::path& directory, const scenes::Scene& scene, const std::string& solver) {
-  return find_in(directory, first_info(scene, solver, Json::object()), Json::object()).standing;
+Standing standing_in(const fs::path& directory, const scenes::Scene& scene, const std::string& solver,
+                     const std::string& from) {
+  Json beside = Json::object();
+  if (!from.empty()) beside[started_from_key] = {{"from", settled_name(from)}};
+  return find_in(directory, first_info(scene, solver, beside), beside).standing;
 }
 
 RunFolder::RunFolder(const fs::path& directory, const scenes::Scene& scene, const std::string& solver,

@@ -31,8 +31,10 @@ enum class Standing {
   another      ///< another run that somebody may want to keep
 };
 
-/// The finished run or its part in a folder, held against what is asked for. Reads only.
-Standing standing_in(const std::filesystem::path& directory, const scenes::Scene&, const std::string& solver);
+/// The finished run or its part in a folder, held against what is asked for; `from`: the state that it is to
+/// start from, empty for its scene's body. Reads only.
+Standing standing_in(const std::filesystem::path& directory, const scenes::Scene&, const std::string& solver,
+                     const std::string& from = "");
 
 /// What a new run may take the place of, beside a run that failed.
 enum class Replace {

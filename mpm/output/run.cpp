@@ -13,6 +13,7 @@
 #include "mpm/cost.h"
 #include "mpm/gauges/gauges.h"
 #include "mpm/output/checkpoint.h"
+#include "mpm/output/hand_over.h"
 #include "mpm/output/noise.h"
 #include "mpm/output/snapshot.h"
 #include "mpm/plain/solver.h"
@@ -64,9 +65,10 @@ Rows rows_about(const RunState& state, const scenes::Scene& scene) {
 
 class MpmRun {
  public:
-  /// `open` opens the run directory; what is missing is said before.
+  /// `start`: what the run begins with in place of the scene's body. `open` opens the run directory; what is
+  /// missing is said before.
   MpmRun(const scenes::Scene& scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint,
-         const std::function<runs::RunWriter()>& open)
+         const std::optional<runs::MaterialState>& start, const std::function<runs::RunWriter()>& open)
       : scene_(scene),
         pieces_(scenes::pieces_of(scene)),
         options_(options),
@@ -79,6 +81,7 @@ class MpmRun {
         factor_(pieces_.whole_over_computed),
         // Before anything is written: seeding may need a program that is missing.
         solver_(checkpoint     ? make(checkpoint->solver)
+                : start        ? make(seeds_of_state(scene, *start))
                 : feeds_.any() ? make(feeds_.due(0.0, first_feed_step))
                                : make(seeds_of(scene))),
         writer_(open()),
@@ -89,6 +92,7 @@ class MpmRun {
       take_up(*checkpoint);
     } else {
       state_.largest_pressure = scenes::pressure_at_rest(scene);
+      if (start) begin_with(*start);
       std::filesystem::remove(options.directory / "checkpoint.h5");
       writer_.info()["occupied_cells_at_start"] = solver_->occupied_cells();
     }
@@ -109,6 +113,13 @@ class MpmRun {
   static SolverSettings with_instruction_set(SolverSettings s, const std::string& set) {
     s.instruction_set = set;
     return s;
+  }
+
+  void begin_with(const runs::MaterialState& start) {
+    state_.time = start.time;
+    for (const runs::Parcel& p : start.parcels)
+      state_.largest_speed =
+          std::max(state_.largest_speed, std::hypot(p.velocity[0], p.velocity[1], p.velocity[2]));
   }
 
   void take_up(const Checkpoint& checkpoint) {
@@ -533,10 +544,22 @@ RunResult within_memory(const scenes::Scene& scene, Make make) {
   }
 }
 
+using Start = std::optional<runs::MaterialState>;
+
+/// What a run begins with where that is not its scene's body.
+Start start_of(const scenes::Scene& scene, const std::string& from, const RunOptions& options) {
+  if (from.empty()) return std::nullopt;
+  Start start = options.read_state(from, scene);
+  runs::check_start(scene, *start);
+  return start;
+}
+
 /// What makes a run another one beside its settings.
-nlohmann::ordered_json beside_settings(const RunOptions& options) {
-  if (options.method == Method::plain) return {{"method", "plain"}};
-  return nlohmann::ordered_json::object();
+nlohmann::ordered_json beside_settings(const RunOptions& options, const Start& start) {
+  auto beside = nlohmann::ordered_json::object();
+  if (options.method == Method::plain) beside["method"] = "plain";
+  if (start) beside["started_from"] = runs::started_from_json(*start);
+  return beside;
 }
 
 /// What a finished run came to.
@@ -549,13 +572,14 @@ RunResult result_of(const runs::RunFolder& folder) {
           number("gauge")};
 }
 
-RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOptions& options) {
+RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOptions& options,
+                 const Start& start) {
   if (folder.is_finished()) {
     if (!options.quiet) runs::say(stderr, folder.finished_words() + "\n");
     return result_of(folder);
   }
   return within_memory(scene, [&] {
-    return MpmRun(scene, options, std::nullopt, [&] { return runs::RunWriter(std::move(folder)); }).run();
+    return MpmRun(scene, options, std::nullopt, start, [&] { return runs::RunWriter(std::move(folder)); }).run();
   });
 }
 
@@ -563,8 +587,9 @@ RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOp
 
 RunResult run(const scenes::Scene& scene, const RunOptions& options) {
   const auto replace = options.force ? runs::Replace::anything : runs::Replace::failed;
-  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace, beside_settings(options)), scene,
-                options);
+  const Start start = start_of(scene, options.from, options);
+  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace, beside_settings(options, start)), scene,
+                options, start);
 }
 
 RunResult resume(const RunOptions& options, const std::vector<std::string>& set) {
@@ -587,7 +612,7 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
       return runs::RunWriter::resume(std::move(lock), scene, {state.time, state.time, state.last_profile});
     };
     return within_memory(scene, [&] {
-      MpmRun resumed(scene, leg, checkpoint, open);
+      MpmRun resumed(scene, leg, checkpoint, std::nullopt, open);
       checkpoint.reset();  // the solver has taken it up
       return resumed.run();
     });
@@ -597,9 +622,10 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
         "{}: this run is finished and has no checkpoint.h5 from which it could be prolonged; run it anew, in "
         "another folder",
         options.directory.string()));
+  const Start start = start_of(scene, runs::started_from(earlier.info), options);
   return run_in(
-      runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished, beside_settings(leg)), scene,
-      leg);
+      runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished, beside_settings(leg, start)), scene,
+      leg, start);
 }
 
 }  // namespace flowrest::mpm

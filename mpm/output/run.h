@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runs/material_state.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
@@ -20,6 +21,8 @@ struct RunOptions {
   /// Empty: the best this machine runs; where a run is gone on with, the one it had, as others round
   /// otherwise.
   std::string instruction_set;
+  std::string from;               ///< the state to start from; empty: the scene's body, at 0 s
+  runs::StateReader read_state;   ///< reads it
   Method method = Method::fast;  ///< of a run that is gone on with: that which it was begun with
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };
@@ -36,7 +39,8 @@ struct RunResult {
 /// same settings and version is taken as it is.
 /// @throws runs::NumericsError where the numerics fail and runs::MachineError where the machine does, as
 /// where disk or memory are full; the run directory then says so, with all data so far.
-/// @throws runs::RunError where the directory may not be written: see runs::RunFolder.
+/// @throws runs::RunError where the directory may not be written, see runs::RunFolder, or the run cannot start
+/// from the state that is asked for, see runs::check_start; nothing is written then.
 RunResult run(const scenes::Scene&, const RunOptions&);
 
 /// Goes on with the run in `options.directory` under its settings with `set` laid over them, bit for bit as

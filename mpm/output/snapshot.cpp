@@ -23,6 +23,16 @@ void add(Hdf5Rows<float>& to, const std::vector<double>& values) {
   for (const double v : values) to.add(static_cast<float>(v));
 }
 
+/// The six components of a particle's deviator as VTK has them. A section that stands upright has its hoop
+/// component, or the one normal to the plane, along y.
+std::array<double, 6> symmetric_tensor(const ParticleBatch& batch, std::size_t i, int dimension, bool upright) {
+  const auto at = [&](std::size_t c) { return batch.deviator[c][i]; };
+  const double third = -(at(0) + at(1));
+  if (dimension == 3) return {at(0), at(1), third, at(2), at(4), at(3)};
+  if (upright) return {at(0), third, at(1), 0.0, 0.0, at(2)};
+  return {at(0), at(1), third, at(2), 0.0, 0.0};
+}
+
 /// The cells of an unstructured grid whose points are its cells.
 void write_vertices(Hdf5File& file, std::size_t count) {
   Hdf5Rows<std::int64_t> connectivity(file, "/VTKHDF/Connectivity", count);
@@ -90,7 +100,7 @@ void SnapshotWriter::write(double time, Solver& solver) {
   const auto points = rows("Points", 3), velocity = rows("PointData/velocity", 3),
              rate = rows("PointData/shear_rate"), stress = rows("PointData/shear_stress"),
              pressure = rows("PointData/pressure"), raw_pressure = rows("PointData/raw_pressure"),
-             volume = rows("PointData/volume");
+             tensor = rows("PointData/stress", 6), volume = rows("PointData/volume");
   std::unique_ptr<Hdf5Rows<float>> flocculation;
   solver.visit([&](const ParticleBatch& batch) {
     for (std::size_t i = 0; i < batch.count; ++i)
@@ -104,13 +114,15 @@ void SnapshotWriter::write(double time, Solver& solver) {
     add(*pressure, averaged.at(batch));
     add(*raw_pressure, batch.raw_pressure);
     add(*volume, batch.volume);
+    for (std::size_t i = 0; i < batch.count; ++i)
+      for (const double s : symmetric_tensor(batch, i, dimension_, upright_)) tensor->add(static_cast<float>(s));
     if (batch.flocculation.empty()) return;
     if (!flocculation) flocculation = rows("PointData/flocculation");
     add(*flocculation, batch.flocculation);
   });
   for (Hdf5Rows<float>* const written :
        {points.get(), velocity.get(), rate.get(), stress.get(), pressure.get(), raw_pressure.get(),
-        volume.get(), flocculation.get()})
+        tensor.get(), volume.get(), flocculation.get()})
     if (written) written->finish();
   file.commit();
   series_.emplace_back(name, time);

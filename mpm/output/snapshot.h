@@ -10,7 +10,8 @@ namespace flowrest::mpm {
 /// Writes the particles as VTKHDF 1.0 UnstructuredGrid, `particles_NNNNNN.hdf`, and brings
 /// `particles.hdf.series`, which ParaView opens as a time series, up to date. Points (m) carry velocity
 /// (m/s), shear_rate (1/s), shear_stress, pressure (averaged, see AveragedPressure) and raw_pressure (Pa),
-/// volume (m3) and, where thixotropic, flocculation. Axisymmetric and plane sections lie in x-z.
+/// stress (Pa, the deviator: XX, YY, ZZ, XY, YZ, XZ), volume (m3) and, where thixotropic, flocculation.
+/// Axisymmetric and plane sections lie in x-z.
 class SnapshotWriter {
  public:
   /// `directory` is made if it is missing; snapshots after `resume_time` are removed.

@@ -56,13 +56,9 @@ Cell<Dim> cell_of(const CellIndex& index) {
   return cell;
 }
 
-/// Calls use(number) for every number of a particle's state, in the order of SolverState's arrays.
+/// Calls use(component) for the components of a particle's deviator.
 template <int Dim, class P, class Use>
-void visit_state(P& p, bool thixotropic, const Use& use) {
-  for (auto& x : p.place) use(x);
-  for (auto& v : p.velocity) use(v);
-  for (auto& row : p.affine)
-    for (auto& a : row) use(a);
+void visit_deviator(P& p, const Use& use) {
   use(p.stress.xx);
   use(p.stress.yy);
   use(p.stress.xy);
@@ -70,6 +66,16 @@ void visit_state(P& p, bool thixotropic, const Use& use) {
     use(p.stress.xz);
     use(p.stress.yz);
   }
+}
+
+/// Calls use(number) for every number of a particle's state, in the order of SolverState's arrays.
+template <int Dim, class P, class Use>
+void visit_state(P& p, bool thixotropic, const Use& use) {
+  for (auto& x : p.place) use(x);
+  for (auto& v : p.velocity) use(v);
+  for (auto& row : p.affine)
+    for (auto& a : row) use(a);
+  visit_deviator<Dim>(p, use);
   use(p.volume_ratio);
   use(p.pressure);
   use(p.mass);
@@ -99,6 +105,9 @@ Particle<T, Dim> particle_of(const SolverSettings& settings, const Seed& seed) {
   p.volume_ratio = static_cast<T>(seed.volume_ratio);
   p.pressure = material_of<T>(settings).state.pressure(p.volume_ratio);
   if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
+  std::size_t component = 0;
+  visit_deviator<Dim>(p, [&](T& s) { s = static_cast<T>(seed.deviator[component++]); });
+  p.rate = static_cast<T>(seed.rate);
   return p;
 }
 
@@ -274,6 +283,8 @@ class PlainSolver final : public Solver {
       batch.volume.push_back(at_rest * ratio);
       batch.rate.push_back(value(p.rate));
       batch.shear_stress.push_back(stress);
+      std::size_t component = 0;
+      visit_deviator<Dim>(p, [&](const T& s) { batch.deviator[component++].push_back(value(s)); });
       batch.raw_pressure.push_back(value(p.pressure));
       batch.elastic_energy.push_back(at_rest * (shape + state.energy(ratio)));
       if (settings_.thixotropic) batch.flocculation.push_back(value(p.flocculation));

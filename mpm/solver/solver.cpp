@@ -257,6 +257,9 @@ class SolverOf final : public Solver {
     v.volume_ratio[at] = static_cast<T>(seed.volume_ratio);
     v.pressure[at] = parameters_.state.at(v.volume_ratio[at]).pressure;
     if (v.lambda) v.lambda[at] = static_cast<T>(seed.flocculation);
+    for (int c = 0; c < deviator_components(); ++c)
+      v.deviator[c][at] = static_cast<T>(seed.deviator[static_cast<std::size_t>(c)]);
+    v.rate[at] = static_cast<T>(seed.rate);
   }
 
   /// Room for particles in these cells. Returns their places.
@@ -554,6 +557,10 @@ class SolverOf final : public Solver {
          {&batch.volume, &batch.rate, &batch.shear_stress, &batch.raw_pressure, &batch.elastic_energy})
       a->resize(count);
     batch.flocculation.resize(v.lambda ? count : 0);
+    for (int c = 0; c < deviator_components(); ++c) {
+      const T* const from = v.deviator[c] + block.first;
+      batch.deviator[static_cast<std::size_t>(c)].assign(from, from + count);
+    }
     if (smooth()) {
       std::vector<T> pressure(count);
       kernels_.acting_pressure(parameters_, v, block, {nullptr, nullptr, averages_.data()},
@@ -574,6 +581,8 @@ class SolverOf final : public Solver {
       batch.elastic_energy[i] = batch.mass[i] / settings_.density * (shape + state.energy(ratio));
     }
   }
+
+  int deviator_components() const { return settings_.dimension == 2 ? 3 : 5; }
 
   double shear_stress(std::size_t p) const {
     const ParticleView<T>& v = particles_.view();
@@ -629,7 +638,8 @@ auto arrays_of(Batch& b) {
   return std::array{&b.position[0],  &b.position[1],   &b.position[2],  &b.velocity[0],
                     &b.velocity[1],  &b.velocity[2],   &b.mass,         &b.volume,
                     &b.rate,         &b.shear_stress,  &b.raw_pressure, &b.acting_pressure,
-                    &b.flocculation, &b.elastic_energy};
+                    &b.flocculation, &b.elastic_energy, &b.deviator[0],  &b.deviator[1],
+                    &b.deviator[2],  &b.deviator[3],   &b.deviator[4]};
 }
 
 }  // namespace

@@ -59,6 +59,8 @@ struct Seed {
   std::array<double, 3> velocity{};  ///< m/s
   double flocculation = 0.0;
   double volume_ratio = 1.0;  ///< J; `volume` is that at rest
+  std::array<double, 5> deviator{};  ///< Pa, of the stress, as many components as particles have
+  double rate = 0.0;                 ///< 1/s
 };
 
 /// Particles to begin with that are nowhere all at once: tells them one by one, the same ones in the same
@@ -83,6 +85,7 @@ struct ParticleBatch {
   std::vector<double> volume;                   ///< m3
   std::vector<double> rate;                     ///< 1/s, plastic (EVP) or total (fluid) shear rate
   std::vector<double> shear_stress;             ///< Pa, the invariant
+  std::array<std::vector<double>, 5> deviator;  ///< Pa, of the stress: xx, yy, xy and, in space, xz, yz
   std::vector<double> raw_pressure;             ///< Pa, of the particle's own volume
   std::vector<double> acting_pressure;  ///< Pa, averaged through the nodes; empty unless that is the B-bar
   std::vector<double> flocculation;     ///< empty without thixotropy
