@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 
+#include "cli/hand_over.h"
 #include "cli/run_command.h"
 #include "cli/version.h"
 #include "mpm/commands.h"
@@ -65,9 +66,9 @@ int main(int argc, char** argv) {
   estimates.foam = foam::estimate;
 #endif
   scenes::add_commands(app, estimates);
-  mpm::add_commands(app);
+  mpm::add_commands(app, cli::read_state);
 #ifdef FLOWREST_HAS_FOAM
-  foam::add_commands(app);
+  foam::add_commands(app, cli::read_state);
 #endif
 #ifdef FLOWREST_HAS_COMPARE
   compare::add_commands(app);

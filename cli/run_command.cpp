@@ -16,6 +16,7 @@
 #include "runs/cores.h"
 #include "runs/folder.h"
 #include "runs/folder_lock.h"
+#include "runs/material_state.h"
 #include "runs/process.h"
 #include "runs/run_directory.h"
 #include "runs/run_folder.h"
@@ -100,6 +101,14 @@ void add_settings(std::vector<std::string>& arguments, const std::vector<std::st
   for (const auto& s : set) arguments.insert(arguments.end(), {"--set", s});
 }
 
+/// What the scene's runs start from: as it is named from here, else in the folder that receives the runs.
+std::string start_of_runs(const scenes::Scene& scene, const RunCommandOptions& options) {
+  const std::string& from = scene.runs.from;
+  if (from.empty() || fs::exists(runs::state_name(from).run)) return from;
+  const fs::path there = fs::path(options.output) / from;
+  return fs::exists(runs::state_name(there.string()).run) ? there.string() : from;
+}
+
 /// What makes a run of a scene, or goes on with it where its folder holds a part of it.
 std::vector<std::string> begin_or_go_on(const std::string& solver, const std::string& named,
                                         const fs::path& directory, const std::vector<std::string>& chosen,
@@ -108,10 +117,12 @@ std::vector<std::string> begin_or_go_on(const std::string& solver, const std::st
   std::vector<std::string> set = options.set;
   set.insert(set.end(), chosen.begin(), chosen.end());
   const scenes::Scene scene = scenes::load_scene(named, {set, model});
-  if (!options.force && runs::standing_in(directory, scene, solver) == runs::Standing::unfinished)
+  const std::string from = start_of_runs(scene, options);
+  if (!options.force && runs::standing_in(directory, scene, solver, from) == runs::Standing::unfinished)
     return {solver, "--resume", directory.string()};
   std::vector<std::string> arguments = {solver, named, "-o", directory.string()};
   if (model) arguments.insert(arguments.end(), {"--model", scenes::to_string(*model)});
+  if (!from.empty()) arguments.insert(arguments.end(), {"--from", from});
   if (options.force) arguments.push_back("--force");
   add_settings(arguments, set);
   return arguments;

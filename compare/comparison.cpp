@@ -197,6 +197,7 @@ Comparison compare_runs(const std::vector<fs::path>& directories, const Options&
   compare_pairs(comparison);
   fill_square(comparison);
   note_scenes(comparison);
+  note_starts(comparison);
   note_missing(comparison);
   note_walls(comparison);
   describe(comparison);

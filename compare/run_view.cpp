@@ -12,6 +12,7 @@
 #include "runs/command.h"
 #include "runs/depth.h"
 #include "runs/gauges.h"
+#include "runs/material_state.h"
 
 namespace flowrest::compare {
 
@@ -277,6 +278,19 @@ void note_scenes(Comparison& comparison) {
       if (note.is_string() && said.insert(note.get<std::string>()).second)
         comparison.notes.push_back(fmt::format("In the scene {}.", note.get<std::string>()));
   }
+}
+
+void note_starts(Comparison& comparison) {
+  std::map<std::string, std::vector<std::string>> by_start;
+  for (const RunView& view : comparison.runs) {
+    const auto start = view.run.info.find(runs::started_from_key);
+    if (start == view.run.info.end() || !start->is_object()) continue;
+    by_start[fmt::format("{}, at {:.4g} s", start->value("run", ""), start->value("time_s", 0.0))].push_back(
+        view.label);
+  }
+  for (const auto& [start, labels] : by_start)
+    comparison.notes.push_back(fmt::format("{} {} from the state of another run: {}.", words::listed(labels),
+                                           labels.size() > 1 ? "start" : "starts", start));
 }
 
 void note_missing(Comparison& comparison) {

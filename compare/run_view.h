@@ -52,6 +52,8 @@ void note_walls(Comparison&);
 
 /// Notes what the runs say of themselves to be implausible, once each.
 void note_scenes(Comparison&);
+/// What runs start from that do not start with their scene's body.
+void note_starts(Comparison&);
 
 /// The command that makes a run of the scene, with the settings of the first run of that solver, or else of
 /// the first run: "flowrest foam roussel-slump --model bi-viscous". Nothing where the runs do not say of

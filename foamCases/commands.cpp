@@ -22,6 +22,8 @@ struct FoamArguments {
   std::vector<std::string> set;
   std::string directory;
   std::string resume;
+  std::string from;
+  runs::StateReader read_state;
   std::optional<int> ranks;
   bool force = false;
   bool json = false;
@@ -50,6 +52,7 @@ void check_options(const FoamArguments& arguments) {
   std::vector<std::string> without_effect;
   if (!arguments.model.empty()) without_effect.emplace_back("--model");
   if (!arguments.directory.empty()) without_effect.emplace_back("--output");
+  if (!arguments.from.empty()) without_effect.emplace_back("--from");
   runs::refuse_beside_resume(without_effect, "--set, --ranks, --json, --quiet");
 }
 
@@ -59,6 +62,8 @@ void run_command(const FoamArguments& arguments) {
   const runs::InterruptGuard guard;
   options.quiet = arguments.quiet;
   options.force = arguments.force;
+  options.from = arguments.from;
+  options.read_state = arguments.read_state;
   options.ranks = arguments.ranks;
   const auto outcome = run_or_resume(arguments, options);
   if (arguments.json) {
@@ -81,9 +86,10 @@ void run_command(const FoamArguments& arguments) {
 
 }  // namespace
 
-void add_commands(CLI::App& app) {
+void add_commands(CLI::App& app, const runs::StateReader& read_state) {
   auto* command = app.add_subcommand("foam", "Run a scene in interFoam: fills the case, runs it, gauges it");
   auto arguments = std::make_shared<FoamArguments>();
+  arguments->read_state = read_state;
   auto* scene = command->add_option("SCENE", arguments->scene, "A scene's name, or the path of its file");
   command->add_option("--model", arguments->model, laws::all_names());
   command
@@ -102,6 +108,7 @@ void add_commands(CLI::App& app) {
       ->add_option("--ranks", arguments->ranks,
                    "Ranks to solve with, under mpirun (1: without; with --resume, as many as the run had)")
       ->check(CLI::Range(1, 1024));
+  command->add_option("--from", arguments->from, runs::from_help);
   command->add_flag("--force", arguments->force, runs::force_help)->excludes(resume);
   command->add_flag("--json", arguments->json, "Print a machine-readable last line");
   command->add_flag("--quiet", arguments->quiet, "Print no progress");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scenes/pieces.h"
 
@@ -35,7 +36,7 @@ Conservation::Conservation(const scenes::Scene& scene, double volume)
       energy_bound_(energy_of_the_fall(scene, volume)) {}
 
 void Conservation::add(double time, double volume, double kinetic_energy) {
-  if (time == 0.0) first_volume_ = volume;
+  if (!std::exchange(has_begun_, true)) first_volume_ = volume;
   time_ = time;
   volume_ = volume;
   kinetic_energy_ = kinetic_energy;
@@ -47,6 +48,7 @@ void Conservation::continue_from(const runs::Table& history) {
   const auto& times = history.at("time_s");
   const auto& errors = history.at("volume_error");
   for (std::size_t row = 0; row < times.size(); ++row) note_error(times[row], errors[row]);
+  has_begun_ = true;
   first_volume_ = history.at("volume_m3").front();
   volume_ = history.at("volume_m3").back();
   kinetic_energy_ = history.at("kinetic_energy_J").back();

@@ -37,7 +37,7 @@ class Conservation {
  private:
   void note_error(double time, double error);
 
-  bool may_leave_;
+  bool may_leave_, has_begun_ = false;
   double scene_volume_;  ///< m3
   double energy_bound_;  ///< J
   double time_ = 0.0, volume_ = 0.0, kinetic_energy_ = 0.0;

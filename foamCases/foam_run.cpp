@@ -18,6 +18,7 @@
 #include "foamCases/case_filler.h"
 #include "foamCases/cost.h"
 #include "foamCases/field_file.h"
+#include "foamCases/hand_over.h"
 #include "foamCases/openfoam.h"
 #include "foamCases/plug_in.h"
 #include "foamCases/ranks.h"
@@ -70,10 +71,11 @@ struct Programs {
   Call solve;
 };
 
-Programs needed_programs(const ApparatusCase& apparatus, int ranks) {
+/// `from_state`: the initial fields are those of a state, which no program makes.
+Programs needed_programs(const ApparatusCase& apparatus, int ranks, bool from_state) {
   Programs programs;
   programs.prepare.push_back({openfoam_program("blockMesh"), {}});
-  for (const Utility& utility : apparatus.utilities())
+  for (const Utility& utility : from_state ? std::vector<Utility>{} : apparatus.utilities())
     programs.prepare.push_back({openfoam_program(utility.program), utility.arguments});
   programs.solve = {openfoam_program("interFoam"), {}};
   if (ranks <= 1) return programs;
@@ -122,15 +124,19 @@ void remove_parts(const fs::path& case_directory) {
     fs::remove_all(case_directory / fmt::format("processor{}", rank));
 }
 
+using Start = std::optional<runs::MaterialState>;
+
 /// One run from the filled case, or from the state it is gone on from, to the summary.
 class CaseRun {
  public:
+  /// `start`: what the run begins with in place of the scene's body; `state`: where it is gone on from.
   CaseRun(const scenes::Scene& scene, const RunOptions& options, Programs programs, runs::RunWriter writer,
-          const std::optional<RunState>& state = std::nullopt)
+          const Start& begins_with, const std::optional<RunState>& state = std::nullopt)
       : scene_(scene),
         apparatus_(case_of(scene)),
         options_(options),
         programs_(std::move(programs)),
+        begins_with_(begins_with),
         state_(state),
         place_(options.directory / "case"),
         writer_(std::move(writer)),
@@ -220,9 +226,12 @@ class CaseRun {
   }
 
   void begin() {
-    if (!state_) fill_case(scene_, case_, plug_in_, ranks());
+    if (!state_) fill();
     sampler_ = apparatus_->sampler(CaseFields(case_, ranks()), writer_, plug_in_.has_value());
-    if (state_) go_on();
+    if (state_)
+      go_on();
+    else if (begins_with_)
+      sampler_->begin_at(begins_with_->time);
     auto& info = writer_.info();
     info["cells"] = sampler_->cells();
     info["ranks"] = ranks();
@@ -234,6 +243,11 @@ class CaseRun {
     }
     if (const std::string differ = apparatus_->walls_differ(); !differ.empty()) info["walls_differ"] = differ;
     writer_.write();
+  }
+
+  void fill() {
+    fill_case(scene_, case_, plug_in_, ranks());
+    if (begins_with_) write_state(scene_, *begins_with_, case_);
   }
 
   /// Counts what the run has behind it as if it had just been followed.
@@ -305,7 +319,9 @@ class CaseRun {
   }
 
   void solve() {
-    sampler_->sample_before(std::numeric_limits<double>::min());  // the initial fields
+    const double begin = begins_with_ ? begins_with_->time : 0.0;
+    sampler_->sample_before(
+        std::nextafter(begin, std::numeric_limits<double>::infinity()));  // the initial fields
     if (!state_ && !starts_with_the_body()) return;
     const fs::path log_path = case_ / "log.interFoam";
     fs::remove(case_ / stop_file);
@@ -498,6 +514,7 @@ class CaseRun {
   double largest_step_ = largest_step(*apparatus_);  ///< s, before it grows
   const RunOptions& options_;
   Programs programs_;
+  Start begins_with_;
   std::optional<RunState> state_;
   runs::PlainName place_;  ///< of the case
   runs::RunWriter writer_;
@@ -554,28 +571,41 @@ RunOutcome outcome_of(const Json& info) {
   return outcome;
 }
 
+/// What a run begins with where that is not its scene's body. Its time is that which OpenFOAM reads.
+Start start_of(const scenes::Scene& scene, const std::string& from, const RunOptions& options) {
+  if (from.empty()) return std::nullopt;
+  Start start = options.read_state(from, scene);
+  start->time = std::stod(folder_of_time(start->time));
+  runs::check_start(scene, *start);
+  return start;
+}
+
 /// Runs a scene from its start in the folder that `open` takes for it.
 template <class Open>
-RunOutcome begin_run(const scenes::Scene& given, const RunOptions& options, Open open) {
+RunOutcome begin_run(const scenes::Scene& given, const RunOptions& options, const std::string& from,
+                     Open open) {
   // What is missing is said before anything is written.
   const auto plug_in = plug_in_for(given);
   const scenes::Scene scene = settled(given, plug_in.has_value());
   const int ranks = options.ranks.value_or(1);
   check_supported(scene);
   check_ranks(scene, ranks, runs::cores());
-  const Programs programs = needed_programs(*case_of(scene), ranks);
-  runs::RunFolder folder = open(scene, Json{{"laws", plug_in ? "plug-in" : "built-in"}});
+  const Start start = start_of(scene, from, options);
+  const Programs programs = needed_programs(*case_of(scene), ranks, start.has_value());
+  Json beside{{"laws", plug_in ? "plug-in" : "built-in"}};
+  if (start) beside[runs::started_from_key] = runs::started_from_json(*start);
+  runs::RunFolder folder = open(scene, beside);
   if (folder.is_finished()) {
     if (!options.quiet) runs::say(stderr, folder.finished_words() + "\n");
     return outcome_of(folder.earlier());
   }
-  return CaseRun(scene, options, programs, runs::RunWriter(std::move(folder))).run();
+  return CaseRun(scene, options, programs, runs::RunWriter(std::move(folder)), start).run();
 }
 
 }  // namespace
 
 RunOutcome run_scene(const scenes::Scene& scene, const RunOptions& options) {
-  return begin_run(scene, options, [&](const scenes::Scene& settled, const Json& beside) {
+  return begin_run(scene, options, options.from, [&](const scenes::Scene& settled, const Json& beside) {
     return runs::RunFolder(options.directory, settled, "foam",
                            options.force ? runs::Replace::anything : runs::Replace::failed, beside);
   });
@@ -590,11 +620,12 @@ RunOutcome resume_run(const RunOptions& given, const std::vector<std::string>& s
   options.ranks = given.ranks.value_or(earlier.ranks);
   check_ranks(earlier.scene, *options.ranks, runs::cores());
   plug_in_for(earlier.scene);
-  const Programs programs = needed_programs(*case_of(earlier.scene), *options.ranks);
+  const std::string from = runs::started_from(earlier.run.info);
+  const Programs programs = needed_programs(*case_of(earlier.scene), *options.ranks, !from.empty());
   const fs::path case_directory = options.directory / "case";
   const auto latest = latest_whole_time(case_directory, earlier);
   if (!latest && !earlier.run.finished())
-    return begin_run(earlier.scene, options, [&](const scenes::Scene& settled, const Json& beside) {
+    return begin_run(earlier.scene, options, from, [&](const scenes::Scene& settled, const Json& beside) {
       return runs::RunFolder(std::move(lock), settled, "foam", runs::Replace::anything, beside);
     });
   if (!latest)
@@ -610,7 +641,7 @@ RunOutcome resume_run(const RunOptions& given, const std::vector<std::string>& s
   fill_parameters(earlier.scene, case_directory, earlier.plug_in, *options.ranks);
   auto writer = runs::RunWriter::resume(std::move(lock), earlier.scene,
                                         {state.time, state.last_row, state.last_profile});
-  return CaseRun(earlier.scene, options, programs, std::move(writer), state).run();
+  return CaseRun(earlier.scene, options, programs, std::move(writer), std::nullopt, state).run();
 }
 
 }  // namespace flowrest::foam

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runs/material_state.h"
 #include "runs/run_directory.h"
 #include "scenes/scene.h"
 
@@ -17,8 +18,10 @@ struct RunOptions {
   /// Above 1: decomposed, under mpirun. One unless given; where a run is gone on with, as many as it had.
   std::optional<int> ranks = std::nullopt;
   bool quiet = false;
-  bool force = false;   ///< replace whatever run stands in the directory
-  double grace = 60.0;  ///< s, that a solver asked to stop has to end its step and write
+  bool force = false;                 ///< replace whatever run stands in the directory
+  std::string from = {};              ///< the state to start from; empty: the scene's body, at 0 s
+  runs::StateReader read_state = {};  ///< reads it
+  double grace = 60.0;                ///< s, that a solver asked to stop has to end its step and write
 };
 
 /// What a run came to; more of it stands in its run.json.
@@ -32,7 +35,8 @@ struct RunOutcome {
 
 /// Fills the scene's case, runs it, gauges it while it runs and leaves a run directory. A finished run of the
 /// same settings and version is taken as it is.
-/// @throws scenes::SceneError where the scene cannot be run, runs::MissingProgram without OpenFOAM,
+/// @throws scenes::SceneError where the scene cannot be run, runs::RunError where it cannot start from the state
+/// that is asked for (see runs::check_start), runs::MissingProgram without OpenFOAM,
 /// runs::RunError where the directory may not be written (see runs::RunFolder), all before anything is
 /// written; runs::NumericsError where the run failed and runs::MachineError where the machine did (the run
 /// directory stays, with the reason).

@@ -44,6 +44,9 @@ class Sampler {
  public:
   virtual ~Sampler() = default;
 
+  /// Says when a run begins that does not begin at 0 s.
+  void begin_at(double time) { start_ = time; }
+
   /// Counts a step: what the solver's log says of it goes into the next row at or after its time.
   void note(const SolverStep&);
 
@@ -84,6 +87,8 @@ class Sampler {
   virtual double overstressing_rate() const = 0;
 
   const scenes::Scene& scene() const { return scene_; }
+  /// Whether the solver has written the fields of a time, which at the start it has not.
+  bool is_solved(double time) const { return time > start_; }
   runs::RunWriter& writer() { return writer_; }
   bool plug_in() const { return plug_in_; }
   /// What a row says of the steps since the last: the largest residual, chatter and Courant number, and the
@@ -111,6 +116,7 @@ class Sampler {
   CaseFields fields_;
   runs::RunWriter& writer_;
   bool plug_in_;
+  double start_ = 0.0;  ///< s
   std::optional<double> last_sampled_;
   RowClock history_clock_, profile_clock_;
   runs::Resolution resolution_;

@@ -20,7 +20,7 @@ SlumpSampler::SlumpSampler(const scenes::Scene& scene, CaseFields fields, runs::
 
 void SlumpSampler::sample(double time, const ReadField& read) {
   SlumpFields fields{read("alpha.concrete", 1), read("U", 3)};
-  if (shear_rates_ && time > 0.0) fields.shear_rate = read("shearRate", 1);
+  if (shear_rates_ && is_solved(time)) fields.shear_rate = read("shearRate", 1);
   if (thixotropic()) {
     const auto lambda = flocculation(time, read);
     state_.flocculation = mesh_->mean_over_concrete(fields.fraction, lambda);

@@ -19,15 +19,18 @@ namespace flowrest::mpm {
 namespace {
 
 struct MpmOptions {
-  std::string scene, model, output, resume, instruction_set, method = "fast";
+  std::string scene, model, output, resume, from, instruction_set, method = "fast";
   std::vector<std::string> set;
   bool force = false, json = false, quiet = false;
+  runs::StateReader read_state;
 };
 
 RunResult run_or_resume(const MpmOptions& options) {
   RunOptions run_options;
   run_options.quiet = options.quiet;
   run_options.force = options.force;
+  run_options.from = options.from;
+  run_options.read_state = options.read_state;
   run_options.instruction_set = options.instruction_set;
   if (options.method == "plain") run_options.method = Method::plain;
   const runs::InterruptGuard guard;
@@ -53,13 +56,15 @@ void check_options(const MpmOptions& options) {
   std::vector<std::string> without_effect;
   if (!options.model.empty()) without_effect.emplace_back("--model");
   if (!options.output.empty()) without_effect.emplace_back("--output");
+  if (!options.from.empty()) without_effect.emplace_back("--from");
   runs::refuse_beside_resume(without_effect, "--set, --instruction-set, --json, --quiet");
 }
 
 }  // namespace
 
-void add_commands(CLI::App& app) {
+void add_commands(CLI::App& app, const runs::StateReader& read_state) {
   auto options = std::make_shared<MpmOptions>();
+  options->read_state = read_state;
   CLI::App* command = app.add_subcommand("mpm", "Run a scene with the material point solver");
   auto* scene = command->add_option("scene", options->scene, "A scene's name, or the path of its file");
   command->add_option("--model", options->model, laws::all_names() + ", in place of material.model");
@@ -73,6 +78,7 @@ void add_commands(CLI::App& app) {
               "Go on with the run in this directory; needs no scene. --set time.end=... prolongs it, "
               "finished or not")
           ->excludes(scene);
+  command->add_option("--from", options->from, runs::from_help);
   command->add_flag("--force", options->force, runs::force_help)->excludes(resume_option);
   command
       ->add_option("--instruction-set", options->instruction_set,

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "runs/material_state.h"
 #include "runs/process.h"
 
 namespace flowrest::runs {
@@ -154,6 +155,8 @@ std::optional<std::string> command_to_make(const Json& info, const std::string& 
   if (!request) return std::nullopt;
   std::vector<std::string> arguments = scene_arguments(*request, model);
   arguments.insert(arguments.begin(), solver);
+  if (const std::string from = started_from(info); !from.empty())
+    arguments.insert(arguments.end(), {"--from", from});
   if (const auto folder = free_folder(text_at(info, "scene_name"), solver + "-" + model))
     arguments.insert(arguments.end(), {"-o", path_argument(*folder)});
   return command_line(arguments);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <variant>
 
 #include "runs/errors.h"
 #include "scenes/pieces.h"
@@ -36,8 +37,8 @@ double volume_of_body(const scenes::Scene& scene) {
 /// What no state can be handed to.
 void check_apparatus(const scenes::Scene& scene, const MaterialState& state) {
   const std::string kind = scenes::name_of(scene.geometry.apparatus);
-  if (kind != "slump")
-    refuse(state, fmt::format("the scene {} is a {}; allowed: a slump, whose material stands on a plate",
+  if (!can_be_handed_over(scene))
+    refuse(state, fmt::format("the scene {} is a {}; allowed: what stands freely on a plate, as a slump does",
                               scene.name, kind));
   const auto dimension = scene.geometry.dimension;
   if (dimension != scenes::Dimension::axisymmetric && dimension != scenes::Dimension::plane &&
@@ -45,23 +46,26 @@ void check_apparatus(const scenes::Scene& scene, const MaterialState& state) {
     refuse(state, fmt::format("geometry.dimension is {}; allowed: axisymmetric, plane, quarter",
                               scenes::to_string(dimension)));
   if (state.kind != kind)
-    refuse(state, fmt::format("it is the state of a {}, and the scene {} is a {}; allowed: the same apparatus",
-                              state.kind, scene.name, kind));
+    refuse(state,
+           fmt::format("it is the state of a {}, and the scene {} is a {}; allowed: the same apparatus",
+                       state.kind, scene.name, kind));
   if (state.dimension != scene.geometry.dimension)
-    refuse(state, fmt::format("it was computed as {}, and geometry.dimension is {} here; allowed: the same",
-                              scenes::to_string(state.dimension),
-                              scenes::to_string(scene.geometry.dimension)));
+    refuse(state,
+           fmt::format("it was computed as {}, and geometry.dimension is {} here; allowed: the same",
+                       scenes::to_string(state.dimension), scenes::to_string(scene.geometry.dimension)));
 }
 
 void check_body(const scenes::Scene& scene, const MaterialState& state) {
   if (std::abs(state.density - scene.material.density) > 1e-9 * scene.material.density)
-    refuse(state, fmt::format("its density is {:g} kg/m3, and material.density is {:g} here; allowed: the same",
-                              state.density, scene.material.density));
+    refuse(state,
+           fmt::format("its density is {:g} kg/m3, and material.density is {:g} here; allowed: the same",
+                       state.density, scene.material.density));
   const double body = volume_of_body(scene), held = state.volume();
   if (!(std::abs(held - body) <= volume_allowed * body))
-    refuse(state, fmt::format("it holds {:.6g} m3 of material, and the scene's body {:.6g} m3; allowed: the same "
-                              "within {:g} %",
-                              held, body, 100.0 * volume_allowed));
+    refuse(state,
+           fmt::format("it holds {:.6g} m3 of material, and the scene's body {:.6g} m3; allowed: the same "
+                       "within {:g} %",
+                       held, body, 100.0 * volume_allowed));
 }
 
 void check_extent(const scenes::Scene& scene, const MaterialState& state) {
@@ -75,8 +79,8 @@ void check_extent(const scenes::Scene& scene, const MaterialState& state) {
   for (const auto& [name, there, here] : {std::tuple{"geometry.domain_radius", reach, domain->radius},
                                           std::tuple{"geometry.domain_height", height, domain->height}})
     if (there > here)
-      refuse(state, fmt::format("its material reaches {:.4g} m, and {} is {:g} m; allowed: more than that", there,
-                                name, here));
+      refuse(state, fmt::format("its material reaches {:.4g} m, and {} is {:g} m; allowed: more than that",
+                                there, name, here));
 }
 
 }  // namespace
@@ -118,11 +122,18 @@ StateName state_name(const std::string& from) {
   const std::string text = from.substr(at + 1);
   double time = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
-  if (error != std::errc{} || end != text.data() + text.size() || !(time >= 0.0) || !std::isfinite(time) || at == 0)
-    throw RunError(fmt::format("--from {}: '{}' is no time; allowed: RUN@5.0, a run and seconds from 0, or RUN for "
-                               "its latest state",
-                               from, text));
+  if (error != std::errc{} || end != text.data() + text.size() || !(time >= 0.0) || !std::isfinite(time) ||
+      at == 0)
+    throw RunError(
+        fmt::format("--from {}: '{}' is no time; allowed: RUN@5.0, a run and seconds from 0, or RUN for "
+                    "its latest state",
+                    from, text));
   return {from.substr(0, at), time};
+}
+
+bool can_be_handed_over(const scenes::Scene& scene) {
+  const scenes::Pieces pieces = scenes::pieces_of(scene);
+  return std::holds_alternative<scenes::SpreadGauge>(pieces.gauged) && pieces.feeds.empty();
 }
 
 std::string settled_name(const std::string& from) {
@@ -152,8 +163,8 @@ std::size_t recorded_time(const StateName& name, const std::vector<double>& time
       words.push_back(fmt::format("{:g}", times[i]));
     else if (words.back() != "...")
       words.push_back("...");
-  throw RunError(fmt::format("--from {}@{:g}: it has recorded no state then; allowed: {} s", name.run, *name.time,
-                             fmt::join(words, ", ")));
+  throw RunError(fmt::format("--from {}@{:g}: it has recorded no state then; allowed: {} s", name.run,
+                             *name.time, fmt::join(words, ", ")));
 }
 
 void check_start(const scenes::Scene& scene, const MaterialState& state) {
@@ -161,16 +172,21 @@ void check_start(const scenes::Scene& scene, const MaterialState& state) {
   check_body(scene, state);
   check_extent(scene, state);
   if (scene.time.end <= state.time)
-    refuse(state, fmt::format("it is the state at {:g} s, and time.end is {:g} s; allowed: a later end", state.time,
-                              scene.time.end));
+    refuse(state, fmt::format("it is the state at {:g} s, and time.end is {:g} s; allowed: a later end",
+                              state.time, scene.time.end));
   if (scene.thixotropy && !state.flocculates)
-    refuse(state, "the scene is thixotropic, and it does not say how far its material has flocculated; allowed: the "
-                  "state of a thixotropic run");
+    refuse(state,
+           "the scene is thixotropic, and it does not say how far its material has flocculated; allowed: the "
+           "state of a thixotropic run");
 }
 
 Json started_from_json(const MaterialState& state) {
-  return {{"from", settled_name(state.from)}, {"run", state.run},   {"solver", state.solver},
-          {"model", state.model},             {"time_s", state.time}, {"volume_m3", state.volume()}};
+  return {{"from", settled_name(state.from)},
+          {"run", state.run},
+          {"solver", state.solver},
+          {"model", state.model},
+          {"time_s", state.time},
+          {"volume_m3", state.volume()}};
 }
 
 std::string started_from(const Json& info) {

@@ -63,10 +63,15 @@ struct MaterialState {
   std::vector<Parcel> parcels;
   std::optional<ParticleSites> sites;  ///< where the parcels are particles
 
-  double volume() const;                 ///< m3 at rest, of the whole body
+  double volume() const;                   ///< m3 at rest, of the whole body
   std::array<double, 3> momentum() const;  ///< kg m/s: sums over the body as it is computed, mirrored in all
-  double flocculation() const;           ///< mean by mass
+  double flocculation() const;             ///< mean by mass
 };
+
+/// What --from does, for a command's help.
+inline constexpr const char* from_help =
+    "Start from the state of another run, RUN@SECONDS (RUN: its latest), whichever solver made it, or from "
+    "exact/second-order, the arrested shape of the scene";
 
 /// What --from says.
 struct StateName {
@@ -81,6 +86,9 @@ std::string settled_name(const std::string& from);
 
 /// Reads the state that --from names for a run of a scene.
 using StateReader = std::function<MaterialState(const std::string& from, const scenes::Scene&)>;
+
+/// Whether the material of a scene is what a state holds: one body that stands freely on a plate.
+bool can_be_handed_over(const scenes::Scene&);
 
 /// Which of the times that a run has recorded is meant: the one within `tolerance` (s), or the latest.
 /// @throws RunError naming those that there are.

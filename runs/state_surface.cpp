@@ -26,7 +26,8 @@ double slope(double before, double here, double after) {
 
 StateSurface::StateSurface(const DepthColumns& columns, double thinnest)
     : plan_(columns.plan),
-      width_(columns.width / static_cast<double>(plan_ == Plan::squares ? slips_of_a_square : slips_of_a_ring)),
+      width_(columns.width /
+             static_cast<double>(plan_ == Plan::squares ? slips_of_a_square : slips_of_a_ring)),
       along_x_(static_cast<std::size_t>(columns.along_x) *
                (plan_ == Plan::squares ? slips_of_a_square : slips_of_a_ring)),
       along_y_(plan_ == Plan::squares ? static_cast<std::size_t>(columns.along_y) * slips_of_a_square : 1),
@@ -64,7 +65,8 @@ void StateSurface::draw_profile(const DepthColumns& columns, double thinnest) {
       const std::size_t i = c * slips_of_a_ring + s;
       const double along = (static_cast<double>(s) + 0.5) / static_cast<double>(slips_of_a_ring);
       const double to_front = front - inner - along * columns.width;
-      depth_[i] = ends_here ? std::sqrt(std::max(0.0, to_front)) : std::max(0.0, depth + (along - 0.5) * steep);
+      depth_[i] =
+          ends_here ? std::sqrt(std::max(0.0, to_front)) : std::max(0.0, depth + (along - 0.5) * steep);
       drawn += depth_[i] * area(i, 0);
       plan += area(i, 0);
     }
@@ -80,7 +82,8 @@ void StateSurface::draw_squares(const DepthColumns& columns) {
   // What lies beyond a plane of symmetry is as on this side; beyond the last column there is nothing.
   const auto at = [&](long i, long j) {
     if (i >= static_cast<long>(nx) || j >= static_cast<long>(ny)) return 0.0;
-    return columns.depth[static_cast<std::size_t>(std::max(i, 0L)) + nx * static_cast<std::size_t>(std::max(j, 0L))];
+    return columns
+        .depth[static_cast<std::size_t>(std::max(i, 0L)) + nx * static_cast<std::size_t>(std::max(j, 0L))];
   };
   for (std::size_t j = 0; j < ny; ++j)
     for (std::size_t i = 0; i < nx; ++i) {
@@ -113,7 +116,8 @@ double StateSurface::volume(double west, double east, double south, double north
       if (i < 0 || i >= static_cast<long>(along_x_) || !(overlap > 0.0)) return;
       const double low = std::max(west, static_cast<double>(i) * width_),
                    high = std::min(east, static_cast<double>(i + 1) * width_);
-      sum += depth_[static_cast<std::size_t>(i) + along_x_ * j] * DepthColumns::area(plan_, low, high, from, to);
+      sum +=
+          depth_[static_cast<std::size_t>(i) + along_x_ * j] * DepthColumns::area(plan_, low, high, from, to);
     });
   };
   if (plan_ != Plan::squares) {

@@ -28,9 +28,9 @@ class StateSurface {
   double area(std::size_t i, std::size_t j) const;
 
   DepthColumns::Plan plan_;
-  double width_;                  ///< m, of a slip
-  std::size_t along_x_, along_y_; ///< slips
-  std::vector<double> depth_;     ///< m, of each slip, into which columns are cut
+  double width_;                   ///< m, of a slip
+  std::size_t along_x_, along_y_;  ///< slips
+  std::vector<double> depth_;      ///< m, of each slip, into which columns are cut
   double reach_ = 0.0;
 };
 

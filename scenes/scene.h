@@ -179,6 +179,7 @@ struct Runs {
   std::vector<Model> foam;
   bool exact = false;
   bool elements = false;  ///< the referee of a slump, by finite elements
+  std::string from;       ///< the state that they start from; empty: the scene's body
   bool operator==(const Runs&) const = default;
 };
 

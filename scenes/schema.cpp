@@ -59,6 +59,11 @@ std::vector<Key> general_keys() {
               "whether `flowrest run` adds the exact or asymptotic solution"),
       boolean("runs.elements", AT(draft.scene.runs.elements),
               "whether `flowrest run` adds a slump computed by finite elements, as a referee"),
+      text(
+          "runs.from", AT(draft.scene.runs.from),
+          "the state that `flowrest run` starts them from, RUN@SECONDS or exact/second-order; RUN is a folder, "
+          "named from here or in the folder that receives SCENE/RUN")
+          .otherwise("they start with the scene's body"),
   };
 }
 

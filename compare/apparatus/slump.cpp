@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "compare/apparatus/arrested_slump.h"
 #include "compare/exact/film.h"
 #include "compare/exact/solution_run.h"
 #include "compare/findings.h"
@@ -114,22 +115,9 @@ std::vector<ExactRun> write_slumps(const Scene& scene, const std::filesystem::pa
                                    std::optional<double> flocculation, runs::Replace replace) {
   const Bingham material = exact::material_of(scene, flocculation);
   const auto& cone = scene.slump();
-  if (scene.base.law != scenes::Wall::no_slip)
-    refuse(scene, "the arrested profiles hold on a base without slip");
-  if (!(material.yield_stress > 0.0)) refuse(scene, "without a yield stress the material spreads for ever");
-  if (!(scene.forces.gravity > 0.0)) refuse(scene, "without gravity nothing slumps");
+  exact::check_arrests(scene, material);
   const bool plane_flow = scene.geometry.dimension == scenes::Dimension::plane;
   const double half_area = 0.5 * (cone.cone_radius_top + cone.cone_radius_bottom) * cone.cone_height;
-  const double foot = std::numbers::pi * cone.cone_radius_bottom * cone.cone_radius_bottom;
-  const double base_stress = material.density * scene.forces.gravity *
-                             (plane_flow ? half_area / cone.cone_radius_bottom : cone.volume() / foot);
-  // Uniaxial compression yields at sqrt(3) tau0, plane compression at 2 tau0 (von Mises).
-  if (base_stress < (plane_flow ? 2.0 : std::numbers::sqrt3) * material.yield_stress)
-    refuse(scene,
-           fmt::format(
-               "the yield stress is so high that the cone stands: its weight over its foot, {:.0f} Pa, is "
-               "less than makes it yield",
-               base_stress));
   const auto must_spread = [&](double radius) {
     if (radius < cone.cone_radius_bottom)
       refuse(scene,

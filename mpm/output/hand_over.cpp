@@ -67,8 +67,9 @@ class SnapshotReader {
       : file_(Hdf5File::open(path)), scene_(scene), factor_(scenes::pieces_of(scene).whole_over_computed) {}
 
   std::vector<Parcel> parcels() const {
-    const auto points = file_.read_doubles("/VTKHDF/Points"), velocity = data("velocity"), volume = data("volume"),
-               pressure = data("raw_pressure"), stress = data("stress"), rate = data("shear_rate");
+    const auto points = file_.read_doubles("/VTKHDF/Points"), velocity = data("velocity"),
+               volume = data("volume"), pressure = data("raw_pressure"), stress = data("stress"),
+               rate = data("shear_rate");
     const auto flocculation = scene_.thixotropy ? data("flocculation") : std::vector<double>(volume.size());
     std::vector<Parcel> parcels(volume.size());
     for (std::size_t p = 0; p < parcels.size(); ++p) {
@@ -86,7 +87,9 @@ class SnapshotReader {
   }
 
  private:
-  std::vector<double> data(const char* name) const { return file_.read_doubles(std::string("/VTKHDF/PointData/") + name); }
+  std::vector<double> data(const char* name) const {
+    return file_.read_doubles(std::string("/VTKHDF/PointData/") + name);
+  }
 
   /// A box of the particle's volume about its place, square in its section.
   void place(Parcel& parcel, const double* point, double volume) const {
@@ -129,14 +132,17 @@ DepthColumns columns_of(const std::vector<Parcel>& parcels, const scenes::Scene&
   columns.along_x = static_cast<int>(std::ceil((farthest + 2.0 * cell) / cell - 1e-9));
   if (columns.plan != DepthColumns::Plan::squares) {
     const bool rings = columns.plan == DepthColumns::Plan::rings;
-    runs::DepthAccumulator depth(rings ? runs::About::axis : runs::About::plane, cell, farthest + 2.0 * cell, grain);
+    runs::DepthAccumulator depth(rings ? runs::About::axis : runs::About::plane, cell, farthest + 2.0 * cell,
+                                 grain);
     for (const Parcel& p : parcels) depth.add(std::abs(centre(p, 0)), rings ? p.volume : 0.5 * p.volume);
     columns.depth = depth.depth();
     return columns;
   }
   const int side = columns.along_y = columns.along_x;
   columns.depth.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
-  const auto mirrored = [&](long i) { return static_cast<std::size_t>(std::min<long>(i < 0 ? -1 - i : i, side - 1)); };
+  const auto mirrored = [&](long i) {
+    return static_cast<std::size_t>(std::min<long>(i < 0 ? -1 - i : i, side - 1));
+  };
   const double plan = DepthColumns::area(columns.plan, 0.0, cell, 0.0, cell), width = grain / cell;
   for (const Parcel& p : parcels) {
     const double x = centre(p, 0) / cell, y = centre(p, 1) / cell;
@@ -163,7 +169,8 @@ class Filling {
         surface_(state.columns, 0.1 * scene.gauges.spread_depth),
         field_(state) {
     for (std::size_t a = 0; a < 3; ++a)
-      spacing_[a] = cell_ / scene.mpm.particles_per_cell[std::min(a, scene.mpm.particles_per_cell.size() - 1)];
+      spacing_[a] =
+          cell_ / scene.mpm.particles_per_cell[std::min(a, scene.mpm.particles_per_cell.size() - 1)];
     if (vertical_ == 1) spacing_[2] = cell_ / scene.mpm.particles_per_cell[1];
     along_x_ = sites_along(0);
     along_y_ = plan_ == DepthColumns::Plan::squares ? sites_along(1) : 1;
@@ -181,8 +188,8 @@ class Filling {
   /// The state's own particles.
   std::vector<Seed> as_they_are() {
     for (const Parcel& p : state_.parcels)
-      add({0.5 * (p.low[0] + p.high[0]), 0.5 * (p.low[1] + p.high[1]), 0.5 * (p.low[2] + p.high[2])}, p.volume,
-          {p.velocity, p.stress, p.shear_rate, p.volume_ratio, p.flocculation});
+      add({0.5 * (p.low[0] + p.high[0]), 0.5 * (p.low[1] + p.high[1]), 0.5 * (p.low[2] + p.high[2])},
+          p.volume, {p.velocity, p.stress, p.shear_rate, p.volume_ratio, p.flocculation});
     for (std::size_t p = 0; p < seeds_.size(); ++p) give(received_.carried[p], seeds_[p]);
     return seeds_;
   }
@@ -192,8 +199,12 @@ class Filling {
     return static_cast<std::size_t>(std::ceil(surface_.reach() / spacing_[axis]));
   }
   double west(std::size_t i) const { return static_cast<double>(i) * spacing_[0]; }
-  double south(std::size_t j) const { return plan_ == DepthColumns::Plan::squares ? static_cast<double>(j) * spacing_[1] : 0.0; }
-  double north(std::size_t j) const { return plan_ == DepthColumns::Plan::squares ? static_cast<double>(j + 1) * spacing_[1] : 0.0; }
+  double south(std::size_t j) const {
+    return plan_ == DepthColumns::Plan::squares ? static_cast<double>(j) * spacing_[1] : 0.0;
+  }
+  double north(std::size_t j) const {
+    return plan_ == DepthColumns::Plan::squares ? static_cast<double>(j + 1) * spacing_[1] : 0.0;
+  }
   double area(std::size_t i, std::size_t j) const {
     return DepthColumns::area(plan_, west(i), west(i + 1), south(j), north(j));
   }
@@ -206,8 +217,9 @@ class Filling {
         contents[i + along_x_ * j] = surface_.volume(west(i), west(i + 1), south(j), north(j));
     std::vector<std::size_t> outside_first(contents.size());
     std::iota(outside_first.begin(), outside_first.end(), std::size_t{0});
-    std::stable_sort(outside_first.begin(), outside_first.end(),
-                     [&](std::size_t a, std::size_t b) { return steps_from_middle(a) > steps_from_middle(b); });
+    std::stable_sort(outside_first.begin(), outside_first.end(), [&](std::size_t a, std::size_t b) {
+      return steps_from_middle(a) > steps_from_middle(b);
+    });
     for (const std::size_t c : outside_first) {
       const std::size_t i = c % along_x_, j = c / along_x_;
       if (c == 0 || contents[c] >= smallest_share * spacing_[2] * area(i, j)) continue;
@@ -222,9 +234,11 @@ class Filling {
     const double plan = area(i, j), height = spacing_[2];
     double left = content / plan, at_rest = 0.0, place = 0.0;  // m
     while (left > 0.0) {
-      const double ratio = state_.knows_pressure
-                               ? field_.in_box({west(i), south(j), place}, {west(i + 1), north(j), place + height}).volume_ratio
-                               : ratio_under(std::max(0.0, left - 0.5 * height));
+      const double ratio =
+          state_.knows_pressure
+              ? field_.in_box({west(i), south(j), place}, {west(i + 1), north(j), place + height})
+                    .volume_ratio
+              : ratio_under(std::max(0.0, left - 0.5 * height));
       const double room = height / ratio;
       const double taken = left - room < smallest_share * room ? left : room;
       // What knows no pressure stands as if it had none.
@@ -232,8 +246,8 @@ class Filling {
       const double thick = state_.knows_pressure ? taken * ratio : taken;
       Carried carried = field_.in_box({west(i), south(j), from}, {west(i + 1), north(j), from + thick});
       carried.volume_ratio = ratio;
-      add({0.5 * (west(i) + west(i + 1)), 0.5 * (south(j) + north(j)), place + 0.5 * taken * ratio}, taken * plan,
-          carried);
+      add({0.5 * (west(i) + west(i + 1)), 0.5 * (south(j) + north(j)), place + 0.5 * taken * ratio},
+          taken * plan, carried);
       left = taken == left ? 0.0 : left - taken;
       at_rest += taken;
       place += taken * ratio;
@@ -258,9 +272,10 @@ class Filling {
 
   void give(const Carried& carried, Seed& seed) const {
     const auto& s = carried.stress;  // xx, xy, xz, yy, yz, zz
-    seed.velocity = vertical_ == 2 ? carried.velocity
-                                   : std::array{carried.velocity[0], carried.velocity[2], 0.0};
-    seed.deviator = vertical_ == 2 ? std::array{s[0], s[3], s[1], s[2], s[4]} : std::array{s[0], s[5], s[2], 0.0, 0.0};
+    seed.velocity =
+        vertical_ == 2 ? carried.velocity : std::array{carried.velocity[0], carried.velocity[2], 0.0};
+    seed.deviator =
+        vertical_ == 2 ? std::array{s[0], s[3], s[1], s[2], s[4]} : std::array{s[0], s[5], s[2], 0.0, 0.0};
     seed.rate = carried.shear_rate;
     seed.volume_ratio = carried.volume_ratio;
     seed.flocculation = carried.flocculation;
@@ -300,13 +315,14 @@ MaterialState read_state(const std::string& from) {
   state.density = run.scene.material.density;
   state.knows_pressure = true;
   state.flocculates = run.scene.thixotropy.has_value();
-  if (state.kind != "slump") return state;  // it is refused by what it is
+  if (!runs::can_be_handed_over(run.scene)) return state;  // it is refused by what it is
   try {
     state.parcels = SnapshotReader(states[which].second, run.scene).parcels();
   } catch (const runs::RunError& error) {
-    throw runs::RunError(fmt::format("--from {}: its particles cannot be handed over, as those of versions before "
-                                     "0.2.0 have no stress: {}",
-                                     from, error.what()));
+    throw runs::RunError(
+        fmt::format("--from {}: its particles cannot be handed over, as those of versions before "
+                    "0.2.0 have no stress: {}",
+                    from, error.what()));
   }
   restore_volume(state.parcels, run.scene);
   state.columns = columns_of(state.parcels, run.scene);

@@ -579,7 +579,8 @@ RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOp
     return result_of(folder);
   }
   return within_memory(scene, [&] {
-    return MpmRun(scene, options, std::nullopt, start, [&] { return runs::RunWriter(std::move(folder)); }).run();
+    return MpmRun(scene, options, std::nullopt, start, [&] { return runs::RunWriter(std::move(folder)); })
+        .run();
   });
 }
 
@@ -588,8 +589,8 @@ RunResult run_in(runs::RunFolder folder, const scenes::Scene& scene, const RunOp
 RunResult run(const scenes::Scene& scene, const RunOptions& options) {
   const auto replace = options.force ? runs::Replace::anything : runs::Replace::failed;
   const Start start = start_of(scene, options.from, options);
-  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace, beside_settings(options, start)), scene,
-                options, start);
+  return run_in(runs::RunFolder(options.directory, scene, "mpm", replace, beside_settings(options, start)),
+                scene, options, start);
 }
 
 RunResult resume(const RunOptions& options, const std::vector<std::string>& set) {
@@ -624,8 +625,8 @@ RunResult resume(const RunOptions& options, const std::vector<std::string>& set)
         options.directory.string()));
   const Start start = start_of(scene, runs::started_from(earlier.info), options);
   return run_in(
-      runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished, beside_settings(leg, start)), scene,
-      leg, start);
+      runs::RunFolder(std::move(lock), scene, "mpm", runs::Replace::unfinished, beside_settings(leg, start)),
+      scene, leg, start);
 }
 
 }  // namespace flowrest::mpm

@@ -21,8 +21,8 @@ struct RunOptions {
   /// Empty: the best this machine runs; where a run is gone on with, the one it had, as others round
   /// otherwise.
   std::string instruction_set;
-  std::string from;               ///< the state to start from; empty: the scene's body, at 0 s
-  runs::StateReader read_state;   ///< reads it
+  std::string from;              ///< the state to start from; empty: the scene's body, at 0 s
+  runs::StateReader read_state;  ///< reads it
   Method method = Method::fast;  ///< of a run that is gone on with: that which it was begun with
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };

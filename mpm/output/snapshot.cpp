@@ -25,7 +25,8 @@ void add(Hdf5Rows<float>& to, const std::vector<double>& values) {
 
 /// The six components of a particle's deviator as VTK has them. A section that stands upright has its hoop
 /// component, or the one normal to the plane, along y.
-std::array<double, 6> symmetric_tensor(const ParticleBatch& batch, std::size_t i, int dimension, bool upright) {
+std::array<double, 6> symmetric_tensor(const ParticleBatch& batch, std::size_t i, int dimension,
+                                       bool upright) {
   const auto at = [&](std::size_t c) { return batch.deviator[c][i]; };
   const double third = -(at(0) + at(1));
   if (dimension == 3) return {at(0), at(1), third, at(2), at(4), at(3)};
@@ -115,7 +116,8 @@ void SnapshotWriter::write(double time, Solver& solver) {
     add(*raw_pressure, batch.raw_pressure);
     add(*volume, batch.volume);
     for (std::size_t i = 0; i < batch.count; ++i)
-      for (const double s : symmetric_tensor(batch, i, dimension_, upright_)) tensor->add(static_cast<float>(s));
+      for (const double s : symmetric_tensor(batch, i, dimension_, upright_))
+        tensor->add(static_cast<float>(s));
     if (batch.flocculation.empty()) return;
     if (!flocculation) flocculation = rows("PointData/flocculation");
     add(*flocculation, batch.flocculation);

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mpm/output/test_runs.h"
@@ -12,6 +13,7 @@ using namespace flowrest;
 using namespace flowrest::mpm;
 using namespace flowrest::mpm::test;
 using testing::ElementsAre;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -118,6 +120,32 @@ TEST_F(Snapshot, IsAVtkHdfUnstructuredGridOfVertices) {
     highest = std::max(highest, points[3 * i + 2]);
   }
   EXPECT_NEAR(highest, 0.3, 0.02);
+}
+
+TEST_F(Snapshot, HoldsTheWholeStressOfEveryParticle) {
+  for (const char* dimension : {"axisymmetric", "quarter"}) {
+    const auto scene =
+        tiny_slump({std::string("geometry.dimension=") + dimension, "mpm.cell=0.025",
+                    "mpm.particles_per_cell=[2" + std::string(dimension[0] == 'q' ? ",2" : "") + ",2]"});
+    auto solver = make_solver(settings_of(scene), seed_particles(scene));
+    for (int i = 0; i < 30; ++i) solver->step(5e-4, acceleration_at(scene, 0.0));
+    const fs::path place = folder / dimension;
+    SnapshotWriter(place, scene, -1.0).write(0.015, *solver);
+    const Reader file(place / "particles_000000.hdf");
+    const auto stress = file.values("/VTKHDF/PointData/stress"),
+               invariant = file.values("/VTKHDF/PointData/shear_stress");
+    ASSERT_EQ(stress.size(), 6 * invariant.size());
+    double largest = 0.0;
+    for (std::size_t p = 0; p < invariant.size(); ++p) {
+      const double* const s = &stress[6 * p];
+      ASSERT_NEAR(s[0] + s[1] + s[2], 0.0, 1e-4) << "a deviator has no trace";
+      const double half =
+          0.5 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) + s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
+      ASSERT_NEAR(std::sqrt(half), invariant[p], 1e-4 * (1.0 + invariant[p]));
+      largest = std::max(largest, invariant[p]);
+    }
+    EXPECT_GT(largest, 40.0) << "it is under load";
+  }
 }
 
 TEST_F(Snapshot, ThixotropicParticlesCarryTheirFlocculation) {

@@ -635,11 +635,11 @@ namespace {
 /// Every array of a batch.
 template <class Batch>
 auto arrays_of(Batch& b) {
-  return std::array{&b.position[0],  &b.position[1],   &b.position[2],  &b.velocity[0],
-                    &b.velocity[1],  &b.velocity[2],   &b.mass,         &b.volume,
-                    &b.rate,         &b.shear_stress,  &b.raw_pressure, &b.acting_pressure,
+  return std::array{&b.position[0],  &b.position[1],    &b.position[2],  &b.velocity[0],
+                    &b.velocity[1],  &b.velocity[2],    &b.mass,         &b.volume,
+                    &b.rate,         &b.shear_stress,   &b.raw_pressure, &b.acting_pressure,
                     &b.flocculation, &b.elastic_energy, &b.deviator[0],  &b.deviator[1],
-                    &b.deviator[2],  &b.deviator[3],   &b.deviator[4]};
+                    &b.deviator[2],  &b.deviator[3],    &b.deviator[4]};
 }
 
 }  // namespace

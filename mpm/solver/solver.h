@@ -58,7 +58,7 @@ struct Seed {
   double volume = 0.0;               ///< m3
   std::array<double, 3> velocity{};  ///< m/s
   double flocculation = 0.0;
-  double volume_ratio = 1.0;  ///< J; `volume` is that at rest
+  double volume_ratio = 1.0;         ///< J; `volume` is that at rest
   std::array<double, 5> deviator{};  ///< Pa, of the stress, as many components as particles have
   double rate = 0.0;                 ///< 1/s
 };
