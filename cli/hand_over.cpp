@@ -36,7 +36,7 @@ std::string solver_of(const std::string& from, const std::filesystem::path& run)
 
 }  // namespace
 
-runs::MaterialState read_state(const std::string& from, const scenes::Scene& scene) {
+runs::MaterialState read_state(const std::string& from, [[maybe_unused]] const scenes::Scene& scene) {
   const runs::StateName name = runs::state_name(from);
   const bool is_run = std::filesystem::exists(name.run);
   const std::string solver = !is_run && name.run.starts_with("exact/") ? "exact" : solver_of(from, name.run);
