@@ -21,7 +21,7 @@ constexpr double most_outputs = 1e8;
 
 /// Largest speed of a fall over that of sound. The material points are weakly compressible: at 1.0 a slump
 /// lands soundly, pressed to 0.88 of its volume; from 1.1 on it is crushed and rebounds with energy that it
-/// never had, however short the step (mpm/README.md, Limits).
+/// never had, however short the step (docs/measured/2026-11-28-limits-of-material-points.md).
 constexpr double largest_fall_over_sound = 1.0;
 
 /// Every model the scene may be run with.

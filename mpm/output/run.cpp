@@ -206,7 +206,7 @@ class MpmRun {
 
   /// A step of Courant number 0.75, the default, is plain APIC; a shorter one smooths as much a second. The
   /// smoothing carries momentum into walls of any shape, whose nodes mirror nothing: beside them it acts
-  /// more slowly (mpm/README.md, Walls).
+  /// more slowly (docs/method/walls.md).
   double apic_relaxation_time() const {
     const double whole = 0.75 * cell_crossing_time();
     const double usual = settings_.walls.empty() ? whole : std::max(whole, relaxation_time_beside_walls);

@@ -60,7 +60,8 @@ SolverSettings settings_of(const scenes::Scene& scene) {
   const bool paper = scene.mpm.scheme == scenes::Scheme::paper;
   s.transfer =
       scene.mpm.scheme == scenes::Scheme::quadratic_apic ? Transfer::quadratic_apic : Transfer::linear_flip;
-  // Volume that walls hold all around gains nothing by being averaged through the nodes (README).
+  // Volume that walls hold all around gains nothing by being averaged through the nodes (docs/measured,
+  // smooth B-bar).
   if (!pieces.free_surface) s.dilatation = Dilatation::cell_average;
   if (paper) s.dilatation = Dilatation::centroid;
   if (scene.mpm.b_bar)

@@ -7,8 +7,8 @@
 ///
 /// A cell's particles are the points at which its stress is summed. Once they lie in disorder their volumes
 /// add up to more or less than the cell and lie to one side of it: a shear stress that is the same everywhere
-/// then pushes nodes, which moves the particles across the flow, and disorder grows by itself (README, What
-/// disorder changes). Only shear stress is summed this way: an overlap of particles under pressure has to
+/// then pushes nodes, which moves the particles across the flow, and disorder grows by itself
+/// (docs/measured/2026-11-28-disorder-in-ducts.md). Only shear stress is summed this way: an overlap of particles under pressure has to
 /// push them apart as it always did.
 namespace flowrest::mpm::FLOWREST_KERNEL_SPACE {
 

@@ -1,5 +1,5 @@
 // The papers' scenes on cells so coarse that each takes a second, held to what the solver gave when the full
-// scenes were measured (scenes/README.md): they notice that an answer changes, not that it is right.
+// scenes were measured (docs/measured): they notice that an answer changes, not that it is right.
 #include <algorithm>
 #include <cmath>
 

@@ -374,7 +374,7 @@ TEST(ExactNumbers, EveryLawIsHeldAgainstItsOwn) {
   EXPECT_NEAR(steady.at(solid_law), 0.75, 1e-12);
   EXPECT_GT(steady.at(fluid_law), 0.755);
   EXPECT_LT(steady.at(fluid_law), 0.775);
-  // Stepped down below yield, only the fluid has a velocity (the README of foamCases has it, too).
+  // Stepped down below yield, only the fluid has a velocity.
   const auto stepped = of("poiseuille-step-down");
   EXPECT_EQ(stepped.count(solid_law), 0u);
   EXPECT_NEAR(stepped.at(fluid_law), 0.01685, 1e-4);
