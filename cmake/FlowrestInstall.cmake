@@ -15,4 +15,5 @@ endfunction()
 
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/flowrest)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/flowrest RENAME copyright)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/manual DESTINATION share/doc/flowrest)
+# Pages lead to each other, from the README on.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION share/doc/flowrest)
