@@ -219,11 +219,13 @@ class Contact {
         }
   }
 
-  /// A node behind a plane along the grid stands for its image, with the sign of the mirrored body.
+  /// A node behind a plane along the grid stands for its image, with the sign of the mirrored body. Those behind
+  /// one of friction are the body's own.
   void add_node(const Grid<T, Dim>& grid, Point& p, Cell<Dim> cell, double weight) const {
     Vec<double, Dim> signed_weight;
     signed_weight.fill(weight);
     for (const Mirror& mirror : grid.mirrors()) {
+      if (!mirror.is_whole()) continue;
       const auto a = static_cast<std::size_t>(mirror.axis);
       const bool behind = mirror.ghost < mirror.image ? cell[a] <= mirror.ghost : cell[a] >= mirror.ghost;
       if (!behind) continue;

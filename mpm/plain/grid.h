@@ -19,7 +19,7 @@ struct Node {
   Vec<T, Dim> momentum{};  ///< kg m/s, before the step's forces
   Vec<T, Dim> impulse{};   ///< kg m/s, of the step's forces
   Vec<T, Dim> velocity{};  ///< m/s, after them
-  Vec<T, Dim> change{};    ///< m/s, the velocity less what particles keep of the one before
+  Vec<T, Dim> before{};    ///< m/s, of the velocity before the step what particles keep
 };
 
 /// What particles average through the nodes, which outlasts a step.
@@ -36,6 +36,9 @@ struct Mirror {
   PlaneWall wall;
   int ghost, image, second;  ///< behind the wall, its image before it, and the next one
 
+  /// Whether the body is mirrored there as a whole. Behind a wall of friction it is as far as the wall holds,
+  /// which is known once the nodes are summed (friction.h).
+  bool is_whole() const { return wall != PlaneWall::friction; }
   /// Whether the mirrored body's velocity has the other sign in a component.
   bool is_odd(int component) const { return wall == PlaneWall::no_slip || component == axis; }
 };

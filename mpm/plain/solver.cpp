@@ -5,110 +5,19 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mpm/plain/step.h"
+#include "mpm/plain/inputs.h"
 
 namespace flowrest::mpm::plain {
 
 namespace {
 
-template <class T>
-Material<T> material_of(const SolverSettings& s) {
-  Material<T> m;
-  m.density = s.density;
-  m.state = {static_cast<T>(s.state.bulk_modulus), static_cast<T>(s.state.shear_modulus),
-             static_cast<T>(s.state.exponent)};
-  m.law = s.law;
-  m.parameters = {static_cast<T>(s.flow.yield_stress), static_cast<T>(s.flow.plastic_viscosity),
-                  static_cast<T>(s.flow.regularisation_time), static_cast<T>(s.flow.critical_shear_rate),
-                  static_cast<T>(s.flow.flow_index)};
-  m.thixotropic = s.thixotropic;
-  m.structure = {static_cast<T>(s.structure.growth), static_cast<T>(s.structure.breakdown),
-                 static_cast<T>(s.structure.exponent)};
-  m.ageing = {static_cast<T>(s.ageing.rate), static_cast<T>(s.ageing.per_time),
-              static_cast<T>(s.ageing.initial_age)};
-  return m;
-}
-
-Numerics numerics_of(const SolverSettings& s) {
-  return {.axisymmetric = s.axisymmetric,
-          .cell = s.cell,
-          .bounds = s.bounds,
-          .nozzles = s.nozzles,
-          .dilatation = s.b_bar(),
-          .explicit_fluid = s.explicit_fluid,
-          .free_surface = s.free_surface,
-          .density_correction = s.density_correction};
-}
-
-template <class T, int Dim>
-std::unique_ptr<Contact<T, Dim>> contact_of(const SolverSettings& s) {
-  if (s.walls.empty()) return nullptr;
-  std::vector<T> friction;
-  for (const Wall& wall : s.walls)
-    friction.push_back(static_cast<T>(wall.contact == mpm::Contact::friction ? wall.friction : 0.0));
-  return std::make_unique<Contact<T, Dim>>(s.walls, std::move(friction), s.cell, s.bounds);
-}
-
-template <int Dim>
-Cell<Dim> cell_of(const CellIndex& index) {
-  Cell<Dim> cell;
-  std::copy_n(index.begin(), Dim, cell.begin());
-  return cell;
-}
-
-/// Calls use(component) for the components of a particle's deviator.
-template <int Dim, class P, class Use>
-void visit_deviator(P& p, const Use& use) {
-  use(p.stress.xx);
-  use(p.stress.yy);
-  use(p.stress.xy);
-  if constexpr (Dim == 3) {
-    use(p.stress.xz);
-    use(p.stress.yz);
-  }
-}
-
-/// Calls use(number) for every number of a particle's state, in the order of SolverState's arrays.
-template <int Dim, class P, class Use>
-void visit_state(P& p, bool thixotropic, const Use& use) {
-  for (auto& x : p.place) use(x);
-  for (auto& v : p.velocity) use(v);
-  for (auto& row : p.affine)
-    for (auto& a : row) use(a);
-  visit_deviator<Dim>(p, use);
-  use(p.volume_ratio);
-  use(p.pressure);
-  use(p.mass);
-  use(p.rate);
-  if (thixotropic) use(p.flocculation);
-}
-
-/// Calls use(number) for one of them.
+/// Calls use(number) for one number of a particle's state.
 template <int Dim, class P, class Use>
 void visit_number(P& p, bool thixotropic, int wanted, const Use& use) {
   int number = 0;
   visit_state<Dim>(p, thixotropic, [&](auto& value) {
     if (number++ == wanted) use(value);
   });
-}
-
-template <class T, int Dim>
-Particle<T, Dim> particle_of(const SolverSettings& settings, const Seed& seed) {
-  Particle<T, Dim> p;
-  p.cell = cell_of<Dim>(seed.cell);
-  for (std::size_t a = 0; a < Dim; ++a) {
-    const T last = T(1) - T(0.5) * std::numeric_limits<T>::epsilon();
-    p.place[a] = std::clamp(static_cast<T>(seed.position[a]), T(0), last);
-    p.velocity[a] = static_cast<T>(seed.velocity[a]);
-  }
-  p.mass = static_cast<T>(seed.volume * settings.density);
-  p.volume_ratio = static_cast<T>(seed.volume_ratio);
-  p.pressure = material_of<T>(settings).state.pressure(p.volume_ratio);
-  if (settings.thixotropic) p.flocculation = static_cast<T>(seed.flocculation);
-  std::size_t component = 0;
-  visit_deviator<Dim>(p, [&](T& s) { s = static_cast<T>(seed.deviator[component++]); });
-  p.rate = static_cast<T>(seed.rate);
-  return p;
 }
 
 template <class T, int Dim>
@@ -135,9 +44,7 @@ template <class T, int Dim>
 class PlainSolver final : public Solver {
  public:
   PlainSolver(const SolverSettings& settings, std::vector<Particle<T, Dim>> particles)
-      : settings_(settings),
-        body_(material_of<T>(settings), numerics_of(settings), contact_of<T, Dim>(settings),
-              std::move(particles)) {}
+      : settings_(settings), body_(body_of<T, Dim>(settings, inputs_of<T>(settings), std::move(particles))) {}
 
   PlainSolver(const SolverSettings& settings, const StoredState& state)
       : PlainSolver(settings, particles_of<T, Dim>(settings, state)) {
@@ -154,8 +61,11 @@ class PlainSolver final : public Solver {
     const double begin = now();
     Vec<T, Dim> driving;
     for (std::size_t a = 0; a < Dim; ++a) driving[a] = static_cast<T>(acceleration[a]);
-    const double kept = std::max(0.0, 1.0 - step / std::max(apic_relaxation_time_, step));
-    const Outcome<T> outcome = body_.step(time_, static_cast<T>(step), driving, static_cast<T>(kept));
+    const auto kept = static_cast<T>(kept_share(apic_relaxation_time_, step));
+    std::vector<NozzleMotion<T>> nozzles;
+    for (const NozzleMotion<double>& nozzle : nozzles_at(settings_, time_, step))
+      nozzles.emplace_back(nozzle);
+    const Outcome<T> outcome = body_.step(time_, static_cast<T>(step), driving, kept, nozzles);
     time_ += step;
     step_ = step;
     times_.particles_to_grid += now() - begin;
@@ -328,9 +238,6 @@ std::string not_served(const SolverSettings& settings) {
     return "linear functions (mpm.scheme linear-flip and paper)";
   if (settings.b_bar() == Dilatation::centroid) return "the dilatation of the cells' centres";
   if (settings.stress_rate != StressRate::hughes_winget) return "the Jaumann rate";
-  for (const AxisBounds& b : settings.bounds)
-    if (b.lower == PlaneWall::friction || b.upper == PlaneWall::friction)
-      return "friction on walls along the grid";
   return "";
 }
 

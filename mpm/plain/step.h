@@ -4,11 +4,13 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <span>
 
 #include "laws/equation_of_state.h"
 #include "laws/law.h"
 #include "mpm/boundary/nozzle.h"
 #include "mpm/plain/contact.h"
+#include "mpm/plain/friction.h"
 #include "mpm/plain/grid.h"
 #include "mpm/plain/tensor.h"
 #include "mpm/solver/choices.h"
@@ -22,7 +24,7 @@ namespace flowrest::mpm::plain {
 /// What the material is.
 template <class T>
 struct Material {
-  double density = 0.0;  ///< kg/m3, at rest and without pressure
+  T density{};  ///< kg/m3, at rest and without pressure
   laws::EquationOfState<T> state;
   laws::Law law = laws::Law::elasto_viscoplastic;
   laws::Parameters<T> parameters;
@@ -36,7 +38,6 @@ struct Numerics {
   bool axisymmetric = false;
   double cell = 0.0;  ///< m
   std::array<AxisBounds, 3> bounds{};
-  std::vector<Nozzle> nozzles;                 ///< in three dimensions
   Dilatation dilatation = Dilatation::smooth;  ///< or the cell average
   bool explicit_fluid = false;  ///< a fluid's stress is that of its rate, else found implicitly
   bool free_surface = true;     ///< where there is none, as in a duct, every cell is full and stays so
@@ -74,9 +75,14 @@ class Body {
  public:
   using Vector = Vec<T, Dim>;
 
+  /// `friction`: of the plane walls of friction among `numerics.bounds`, of each axis' lower and upper one.
   Body(const Material<T>& material, const Numerics& numerics, std::unique_ptr<Contact<T, Dim>> walls,
-       std::vector<Particle<T, Dim>> particles)
-      : material_(material), numerics_(numerics), grid_(numerics.bounds), walls_(std::move(walls)) {
+       std::vector<Particle<T, Dim>> particles, const std::array<std::array<T, 2>, 3>& friction = {})
+      : material_(material),
+        numerics_(numerics),
+        grid_(numerics.bounds),
+        planes_(friction),
+        walls_(std::move(walls)) {
     take(std::move(particles));
   }
 
@@ -89,13 +95,20 @@ class Body {
 
   /// Advances by `dt` seconds from `time` under a uniform acceleration (m/s2). `keep` is the share of their
   /// own velocity, and of its affine part, that particles keep over the step: none is APIC as published.
-  Outcome<T> step(double time, const T& dt, const Vector& acceleration, const T& keep) {
+  /// `nozzles`: those that are there, in three dimensions.
+  Outcome<T> step(double time, const T& dt, const Vector& acceleration, const T& keep,
+                  std::span<const NozzleMotion<T>> nozzles = {}) {
     Outcome<T> outcome;
     particles_to_grid(dt);
-    forces_to_velocities(dt, acceleration);
-    outcome.wall_work = hold_to_nozzles(time, dt);
-    if (walls_) outcome.wall_work += hold_to_walls(time, dt, acceleration);
-    hold_to_planes(keep);
+    forces_to_velocities(dt, acceleration, keep);
+    outcome.wall_work = hold_to_nozzles(nozzles);
+    planes_.hold(grid_);
+    if (walls_) {
+      outcome.wall_work += hold_to_walls(time, dt, acceleration);
+      planes_.hold_again(grid_);
+    }
+    outcome.wall_work += planes_.finish(grid_);
+    hold_to_planes();
     grid_to_particles(dt, keep);
     average_dilatation();
     strain_to_stress(dt, material_.ageing.grown(T(time) + dt), outcome);
@@ -176,15 +189,18 @@ class Body {
   // 2 ------------------------------------------------------------------------------------------------------
 
   /// New velocities. Every node falls as its mass does; what lies behind a plane wall is that of the mirrored
-  /// body, and is folded onto its image with the mirrored body's sign.
-  void forces_to_velocities(const T& dt, const Vector& acceleration) {
+  /// body, and is folded onto its image with the mirrored body's sign. Behind a wall of friction only the filling
+  /// is.
+  void forces_to_velocities(const T& dt, const Vector& acceleration, const T& keep) {
     for (Node<T, Dim>& node : grid_.nodes())
       for (std::size_t i = 0; i < Dim; ++i) node.impulse[i] += node.mass * dt * acceleration[i];
     for (const Mirror& mirror : grid_.mirrors())
       grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
         Node<T, Dim>&from = grid_.node(ghost), &to = grid_.node(image);
-        to.mass += from.mass;
         to.filling += from.filling;
+        from.filling = T(0);
+        if (!mirror.is_whole()) return;
+        to.mass += from.mass;
         for (std::size_t i = 0; i < Dim; ++i) {
           const T sign(mirror.is_odd(static_cast<int>(i)) ? -1 : 1);
           to.momentum[i] += sign * from.momentum[i];
@@ -194,21 +210,22 @@ class Body {
       });
     for (Node<T, Dim>& node : grid_.nodes())
       if (carries(node))
-        for (std::size_t i = 0; i < Dim; ++i)
+        for (std::size_t i = 0; i < Dim; ++i) {
           node.velocity[i] = (node.momentum[i] + node.impulse[i]) / node.mass;
+          node.before[i] = keep * node.momentum[i] / node.mass;
+        }
   }
 
   /// Nozzles move what is in them (boundary/nozzle.h). Returns their work on the material, J.
-  T hold_to_nozzles(double time, const T& dt) {
+  T hold_to_nozzles(std::span<const NozzleMotion<T>> nozzles) {
     T work(0);
     nozzle_impulse_ = {};
-    for (const Nozzle& nozzle : numerics_.nozzles)
-      if (nozzle.is_there(time))
-        work += hold_to_nozzle(NozzleMotion(nozzle, time, value(dt), numerics_.cell));
+    if constexpr (Dim == 3)
+      for (const NozzleMotion<T>& nozzle : nozzles) work += hold_to_nozzle(nozzle);
     return work;
   }
 
-  T hold_to_nozzle(const NozzleMotion& motion) {
+  T hold_to_nozzle(const NozzleMotion<T>& motion) {
     T work(0);
     for (std::size_t n = 0; n < grid_.size(); ++n) {
       Node<T, Dim>& node = grid_.node(n);
@@ -219,10 +236,10 @@ class Body {
       const auto held = motion.at(place);
       if (!held) continue;
       for (std::size_t a = 0; a < Dim; ++a) {
-        const T impulse = node.mass * (T((*held)[a]) - node.velocity[a]);
-        node.velocity[a] = T((*held)[a]);
-        nozzle_impulse_[a] += impulse;
-        work += impulse * T((*held)[a]);
+        const T change = held->share * (held->velocity[a] - node.velocity[a]);
+        node.velocity[a] += change;
+        nozzle_impulse_[a] += node.mass * change;
+        work += node.mass * change * node.velocity[a];
       }
     }
     return work;
@@ -237,22 +254,19 @@ class Body {
 
   // 3 ------------------------------------------------------------------------------------------------------
 
-  /// What particles will take up beside what they keep, and the mirrored body behind plane walls.
-  void hold_to_planes(const T& keep) {
-    for (Node<T, Dim>& node : grid_.nodes()) {
-      node.change = node.velocity;
-      if (carries(node))
-        for (std::size_t i = 0; i < Dim; ++i) node.change[i] -= keep * node.momentum[i] / node.mass;
-    }
+  /// The mirrored body behind plane walls.
+  void hold_to_planes() {
     correct_transfer();
     for (const Mirror& mirror : grid_.mirrors())
       grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
         Node<T, Dim>& behind = grid_.node(ghost);
+        behind.filling = grid_.node(image).filling;
+        if (!mirror.is_whole()) return;
         behind = grid_.node(image);
         for (std::size_t i = 0; i < Dim; ++i)
           if (mirror.is_odd(static_cast<int>(i))) {
             behind.velocity[i] = -behind.velocity[i];
-            behind.change[i] = -behind.change[i];
+            behind.before[i] = -behind.before[i];
           }
       });
   }
@@ -272,7 +286,7 @@ class Body {
         if (!(two.mass > T(0.5) * one.mass)) return;
         for (std::size_t i = 0; i < Dim; ++i) {
           one.velocity[i] -= share * (two.velocity[i] - T(3) * one.velocity[i]);
-          one.change[i] -= share * (two.change[i] - T(3) * one.change[i]);
+          one.before[i] -= share * (two.before[i] - T(3) * one.before[i]);
         }
       });
     }
@@ -303,8 +317,10 @@ class Body {
         motion.filling += weight * node.filling;
         for (std::size_t i = 0; i < Dim; ++i) {
           motion.velocity[i] += weight * node.velocity[i];
-          p.velocity[i] += weight * node.change[i];
-          const T moment = per_moment * weight * node.change[i];
+          // What particles take up beside what they keep.
+          const T change = node.velocity[i] - node.before[i];
+          p.velocity[i] += weight * change;
+          const T moment = per_moment * weight * change;
           for (std::size_t j = 0; j < Dim; ++j) {
             p.affine[i][j] += moment * offset[j];
             motion.gradient[i][j] += per_cell * node.velocity[i] * slope[j];
@@ -363,18 +379,19 @@ class Body {
     return heeded;
   }
 
-  /// How far a cell beside a no-slip plane wall is covered with material, 0 to 1: by the filling of the node
-  /// over it. Other cells are not.
+  /// How far a cell beside a plane wall that holds it is covered with material, 0 to 1: by the filling of the
+  /// node over it, and beside a wall of friction as far as the wall holds. Other cells are not.
   T covered(const Cell<Dim>& cell) const {
     constexpr double from = 0.7, wholly_from = 0.95;
     T most(0);
     for (const Mirror& mirror : grid_.mirrors()) {
       const auto a = static_cast<std::size_t>(mirror.axis);
-      if (mirror.wall != PlaneWall::no_slip || cell[a] != mirror.image) continue;
+      if (mirror.wall == PlaneWall::slip || cell[a] != mirror.image) continue;
       Cell<Dim> over = cell;
       over[a] = mirror.second;
-      const T share = (grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from);
-      most = laws::larger(most, laws::smaller(share, T(1)));
+      const T share =
+          laws::smaller(T((grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from)), T(1));
+      most = laws::larger(most, mirror.is_whole() ? share : T(planes_.holds(grid_.index(cell)) * share));
     }
     return most;
   }
@@ -513,8 +530,10 @@ class Body {
 
   bool is_smooth() const { return numerics_.dilatation == Dilatation::smooth; }
   Stencil<T, Dim> stencil(const Particle<T, Dim>& p) const { return {grid_, p.cell, p.place}; }
-  T volume_of(const Particle<T, Dim>& p) const { return p.mass * p.volume_ratio / T(material_.density); }
-  double cell_volume() const { return std::pow(numerics_.cell, Dim); }
+  T volume_of(const Particle<T, Dim>& p) const { return p.mass * p.volume_ratio / material_.density; }
+  double cell_volume() const {
+    return Dim == 3 ? numerics_.cell * numerics_.cell * numerics_.cell : numerics_.cell * numerics_.cell;
+  }
 
   /// m; of a ring on the axis small but not nought
   T radius(const Particle<T, Dim>& p) const {
@@ -527,7 +546,8 @@ class Body {
 
   /// Whether a node has more than the round-off of a mass.
   bool carries(const Node<T, Dim>& node) const {
-    const double full = material_.density * std::pow(numerics_.cell, numerics_.axisymmetric ? 3 : Dim);
+    const double full =
+        value(material_.density) * cell_volume() * (numerics_.axisymmetric ? numerics_.cell : 1.0);
     return node.mass > T(1e-25 * full);
   }
 
@@ -633,6 +653,7 @@ class Body {
   Material<T> material_;
   Numerics numerics_;
   Grid<T, Dim> grid_;
+  PlaneFriction<T, Dim> planes_;
   std::unique_ptr<Contact<T, Dim>> walls_;  ///< null where there are none but planes along the grid
   std::vector<Particle<T, Dim>> particles_, sorted_;
   std::vector<std::pair<std::size_t, std::size_t>> cells_;  ///< particles of each cell: from, to

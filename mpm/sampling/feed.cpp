@@ -26,24 +26,30 @@ Feed::Feed(const Nozzle& nozzle, double cell, int per_axis, bool half, double fl
     }
 }
 
-bool Feed::is_due(double time) const {
-  return time >= nozzle_.begins_at && begin_of(discs_) < nozzle_.column &&
-         begin_of(discs_) < nozzle_.extruded(time) + filled_cells * cell_;
+bool Feed::is_due(std::size_t disc, double time) const {
+  return time >= nozzle_.begins_at && begin_of(disc) < nozzle_.column &&
+         begin_of(disc) < nozzle_.extruded(time) + filled_cells * cell_;
 }
 
-void Feed::skip_to(double time) {
-  while (is_due(time)) ++discs_;
+std::size_t Feed::count_due(double time) const {
+  std::size_t count = 0;
+  while (is_due(discs_ + count, time)) ++count;
+  return count;
 }
 
-std::vector<Seed> Feed::due(double time, double step) {
+void Feed::skip_to(double time) { discs_ += count_due(time); }
+
+std::vector<Seed> Feed::due(double time, double step) { return next(count_due(time), time, step); }
+
+std::vector<Seed> Feed::next(std::size_t count, double time, double step) {
   std::vector<Seed> seeds;
-  if (!is_due(time)) return seeds;
+  if (count == 0) return seeds;
   const Vector mouth = nozzle_.mouth(time);
   const double extruded = nozzle_.extruded(time);
   Seed seed;
-  seed.velocity = NozzleMotion(nozzle_, time, step, cell_).column();
+  seed.velocity = motion_of(nozzle_, time, step, cell_).column();
   seed.flocculation = flocculation_;
-  while (is_due(time)) {
+  for (const std::size_t last = discs_ + count; discs_ < last; ++discs_) {
     const double begin = begin_of(discs_), end = end_of(discs_);
     seed.volume = area_ * (end - begin) / static_cast<double>(sites_.size());
     for (const Site& site : sites_) {
@@ -55,7 +61,6 @@ std::vector<Seed> Feed::due(double time, double step) {
       }
       seeds.push_back(seed);
     }
-    ++discs_;
   }
   return seeds;
 }
@@ -67,10 +72,18 @@ Feeds::Feeds(const SolverSettings& settings, int per_axis, bool half, double flo
     feeds_.emplace_back(nozzle, settings.cell, per_axis, half, flocculation);
 }
 
-std::vector<Seed> Feeds::due(double time, double step) {
+std::vector<Seed> Feeds::due(double time, double step) { return next(count_due(time), time, step); }
+
+std::vector<std::size_t> Feeds::count_due(double time) const {
+  std::vector<std::size_t> counts;
+  for (const Feed& feed : feeds_) counts.push_back(feed.count_due(time));
+  return counts;
+}
+
+std::vector<Seed> Feeds::next(const std::vector<std::size_t>& counts, double time, double step) {
   std::vector<Seed> all;
-  for (Feed& feed : feeds_) {
-    const std::vector<Seed> seeds = feed.due(time, step);
+  for (std::size_t f = 0; f < feeds_.size(); ++f) {
+    const std::vector<Seed> seeds = feeds_[f].next(counts[f], time, step);
     all.insert(all.end(), seeds.begin(), seeds.end());
   }
   return all;

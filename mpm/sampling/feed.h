@@ -20,6 +20,11 @@ class Feed {
 
   /// The discs that are due at `time`, moving as the column does on average over the `step` s after it.
   std::vector<Seed> due(double time, double step);
+  /// How many are due at `time` and have not come.
+  std::size_t count_due(double time) const;
+  /// The next `count` discs, whether they are due or not: what `due` gives of a feed that is a little faster or
+  /// slower, disc by disc.
+  std::vector<Seed> next(std::size_t count, double time, double step);
   /// Takes those that are due at `time` for come, as where a run is gone on with.
   void skip_to(double time);
   std::size_t discs() const { return discs_; }
@@ -30,7 +35,7 @@ class Feed {
   struct Site {
     double x, y;  ///< m from the axis
   };
-  bool is_due(double time) const;
+  bool is_due(std::size_t disc, double time) const;
   double begin_of(std::size_t disc) const { return thickness_ * static_cast<double>(disc); }
   double end_of(std::size_t disc) const { return std::min(begin_of(disc + 1), nozzle_.column); }
 
@@ -50,6 +55,9 @@ class Feeds {
   std::vector<Seed> due(double time, double step);
   void skip_to(double time);
   double volume() const;
+  /// Of each feed, as those of Feed.
+  std::vector<std::size_t> count_due(double time) const;
+  std::vector<Seed> next(const std::vector<std::size_t>& counts, double time, double step);
 
  private:
   std::vector<Feed> feeds_;
