@@ -14,6 +14,7 @@
 #include "scenes/text.h"
 #include "studies/accuracy.h"
 #include "studies/cards/card.h"
+#include "studies/gradient/gradient.h"
 #include "studies/ledger.h"
 #include "studies/results.h"
 #include "studies/validation/validation.h"
@@ -277,6 +278,7 @@ void add_judge(CLI::App& app) {
 void add_commands(CLI::App& app) {
   add_study(app);
   add_verify(app);
+  gradient::add_command(app);
   validation::add_command(app);
   add_judge(app);
   add_ledger(app);

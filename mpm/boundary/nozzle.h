@@ -35,7 +35,8 @@ struct Nozzle {
 /// pressed together where no node lets them go. The mouth should lie on a row of nodes, which are in the
 /// middle of cells; else it lies on the next row above.
 ///
-/// Across an edge, of the column or of the tube, what holds changes over one cell with a continuous slope.
+/// What holds changes over one cell with a continuous slope: from column to tube about the column's edge, and from
+/// tube to nothing about the tube's.
 /// A node that was held or not, by a hair, would make the flow jump as the tube moves past it, and nothing
 /// printed would have a derivative by the printing velocity.
 ///

@@ -171,13 +171,13 @@ void PlaneFriction<T>::hold_again(T* nodes) {
 template <class T>
 void PlaneFriction<T>::correct_transfer(const Pair& p, T* nodes) const {
   if (p.second == absent || !(p.held > 0.0)) return;
-  if (!(static_cast<double>(nodes[p.second]) > 0.5 * (p.mass + p.ghost_mass))) return;
+  const double known = known_profile(static_cast<double>(nodes[p.second]), p.mass + p.ghost_mass);
   for (int r = 0; r < node_values / record; ++r)
     for (int c = 0; c < grid_.dimension; ++c) {
       const auto at = static_cast<std::size_t>(r * record + 1 + c);
       T &first = nodes[p.first + at], &ghost = nodes[p.ghost + at];
       const T bend = nodes[p.second + at] - T(2) * first + ghost;
-      const T correction = static_cast<T>(wall_transfer_correction * p.held) * bend;
+      const T correction = static_cast<T>(wall_transfer_correction * known * p.held) * bend;
       first -= correction;
       ghost += correction;
     }

@@ -54,7 +54,7 @@ void fold_ghosts(T* arena, const BlockView& block, const AxisBounds* bounds) {
 }
 
 /// Takes the transfer's error (wall_transfer.h) out of the first row of nodes along every no-slip wall. Where
-/// the second row holds little the profile is unknown and the first row is left alone. Before ghost nodes
+/// the second row holds little the profile is unknown and the first row is left alone (known_profile). Before ghost nodes
 /// copy these.
 template <class T, int Dim>
 void correct_wall_transfer(T* arena, const BlockView& block, const AxisBounds* bounds) {
@@ -66,9 +66,10 @@ void correct_wall_transfer(T* arena, const BlockView& block, const AxisBounds* b
       across_layers<Dim>(a, cell + 1, side == 0 ? cell + 2 : cell, [&](int first, int second) {
         T* v1 = arena + first * node_values;
         const T* v2 = arena + second * node_values;
-        if (v2[0] <= T(0.5) * v1[0]) return;
+        if (!(v1[0] > T(0))) return;
+        const T share = T(wall_transfer_correction) * known_profile(v2[0], v1[0]);
         for (int n = 1; n < node_values; ++n)
-          if (n != record) v1[n] -= T(wall_transfer_correction) * (v2[n] - T(3) * v1[n]);
+          if (n != record) v1[n] -= share * (v2[n] - T(3) * v1[n]);
       });
     }
 }

@@ -13,4 +13,13 @@ namespace flowrest::mpm {
 /// the error is a drag on the body that grows as 1 / step, and most of what is wrong with a duct's profile.
 constexpr double wall_transfer_correction = 1.0 / 18.0;
 
+/// How far the profile beside a wall is known, 0 to 1: not where the second row holds little. `second` over `first`:
+/// the masses of the rows. It fades, as a threshold would make the flow jump when a node passes it, and a run without
+/// derivatives.
+template <class T>
+constexpr T known_profile(const T& second, const T& first) {
+  const T share = T(2) * second / first - T(0.5);
+  return share < T(0) ? T(0) : T(1) < share ? T(1) : share;
+}
+
 }  // namespace flowrest::mpm

@@ -39,8 +39,6 @@ namespace {
 
 /// More energy made by the discretisation than this share of the energy scale is an instability.
 constexpr double energy_made_allowed = 0.05;
-/// Over which a feed's first discs take their speed, s.
-constexpr double first_feed_step = 1e-4;
 /// Time over which APIC's transfer acts once in scenes with walls of any shape, s. A duct between such walls,
 /// five cells wide, carries 0.66 of what it should with plain APIC, 0.88 with this and 0.90 with 0.05.
 constexpr double relaxation_time_beside_walls = 0.02;
@@ -214,8 +212,8 @@ class MpmRun {
   }
 
   void advance() {
-    const double step = next_step();
-    solver_->set_apic_relaxation_time(apic_relaxation_time());
+    const double step = next_step(), relaxation_time = apic_relaxation_time();
+    solver_->set_apic_relaxation_time(relaxation_time);
     solver_->set_time(state_.time);
     const StepResult result = solver_->step(step, acceleration_at(scene_, state_.time));
     state_.step = step;
@@ -227,7 +225,9 @@ class MpmRun {
     if (!scene_.forces.body_force.empty())
       state_.work += factor_ * step * acceleration_at(scene_, state_.time)[0] * result.momentum;
     const double target = std::min(end_, next_row());
+    const double begin = state_.time;
     state_.time = step >= target - state_.time ? target : state_.time + step;
+    if (options_.on_step) options_.on_step({begin, step, state_.time, relaxation_time});
     feed(step);
     if (noise_.add(*solver_, step)) state_.noise.add(state_.time, noise_.noise());
     if (result.largest_speed > fastest_)
@@ -287,6 +287,7 @@ class MpmRun {
   void output() {
     const runs::Row layer = resolution_.add(state_.time, measures_.layer);
     writer_.history(gauges_.row(state_.time, state_.step, measures_, layer));
+    if (options_.on_row) options_.on_row(state_.time);
     while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
     if (due(state_.profiles, scene_.output.profile_interval)) {
       writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);

@@ -14,6 +14,13 @@ namespace flowrest::mpm {
 /// What computes the steps: the kernels, or the plain step (plain/step.h).
 enum class Method { fast, plain };
 
+/// A step that a run has made.
+struct StepTaken {
+  double time = 0.0, step = 0.0;      ///< s: when it began, and how long it was
+  double end = 0.0;                   ///< s: what time it was after it
+  double apic_relaxation_time = 0.0;  ///< s, see Solver::set_apic_relaxation_time
+};
+
 struct RunOptions {
   std::filesystem::path directory;  ///< the run directory
   bool quiet = false;
@@ -24,6 +31,9 @@ struct RunOptions {
   std::string from;              ///< the state to start from; empty: the scene's body, at 0 s
   runs::StateReader read_state;  ///< reads it
   Method method = Method::fast;  ///< of a run that is gone on with: that which it was begun with
+  /// Told of every step, and of the time (s) of every row of history.csv: for those who make the run again.
+  std::function<void(const StepTaken&)> on_step;
+  std::function<void(double)> on_row;
   /// Asked at every step; true stops the run at a step boundary with a checkpoint (Ctrl-C).
   std::function<bool()> interrupted = [] { return false; };
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "laws/parameters.h"
+#include "mpm/boundary/wall_transfer.h"
 #include "mpm/plain/grid.h"
 
 /// Coulomb's friction on plane walls along the grid.
@@ -119,11 +120,12 @@ class PlaneFriction {
     if (p.second == absent || !(p.held > T(0))) return;
     Node<T, Dim>&first = grid.node(p.first), &ghost = grid.node(p.ghost);
     const Node<T, Dim>& second = grid.node(p.second);
-    if (!(second.mass > T(0.5) * (first.mass + ghost.mass))) return;
+    const T share =
+        T(wall_transfer_correction) * known_profile<T>(second.mass, first.mass + ghost.mass) * p.held;
     for (const Part part : {&Node<T, Dim>::velocity, &Node<T, Dim>::before})
       for (std::size_t c = 0; c < Dim; ++c) {
         const T bend = (second.*part)[c] - T(2) * (first.*part)[c] + (ghost.*part)[c];
-        const T correction = T(1.0 / 18.0) * p.held * bend;
+        const T correction = share * bend;
         (first.*part)[c] -= correction;
         (ghost.*part)[c] += correction;
       }

@@ -9,6 +9,7 @@
 #include "laws/equation_of_state.h"
 #include "laws/law.h"
 #include "mpm/boundary/nozzle.h"
+#include "mpm/boundary/wall_transfer.h"
 #include "mpm/plain/contact.h"
 #include "mpm/plain/friction.h"
 #include "mpm/plain/grid.h"
@@ -277,13 +278,13 @@ class Body {
   /// first two nodes that is taken out again: B / 2 / (1 - 3 B / 2) = 1/18. Where the second node holds
   /// little the profile is not known.
   void correct_transfer() {
-    const T share = T(1.0 / 18.0);
     for (const Mirror& mirror : grid_.mirrors()) {
       if (mirror.wall != PlaneWall::no_slip) continue;
       grid_.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
         Node<T, Dim>& one = grid_.node(first);
         const Node<T, Dim>& two = grid_.node(second);
-        if (!(two.mass > T(0.5) * one.mass)) return;
+        if (!(one.mass > T(0))) return;
+        const T share = T(wall_transfer_correction) * known_profile(two.mass, one.mass);
         for (std::size_t i = 0; i < Dim; ++i) {
           one.velocity[i] -= share * (two.velocity[i] - T(3) * one.velocity[i]);
           one.before[i] -= share * (two.before[i] - T(3) * one.before[i]);
@@ -365,8 +366,8 @@ class Body {
   /// What a particle makes of how full its surroundings are. With little around it, it is a drop, whose nodes
   /// carry nothing else and weigh next to nothing near a cell's face: the less there is, the less of the
   /// strain of volume it feels is its own. Where particles overlap they drifted together under shear, which
-  /// no divergence sees: it is told that it is compressed, in proportion to the shearing. Beside a no-slip
-  /// plane wall, in cells that material covers, a gap is closed the same way.
+  /// no divergence sees: it is told that it is compressed, in proportion to the shearing. Beside a plane wall that
+  /// holds, where material covers it, a gap is closed the same way.
   T heeded(const Particle<T, Dim>& p, const Motion& motion, const T& dilatation) const {
     constexpr double drop_filling = 0.2;  // a plane surface has a half, an edge a quarter
     const T full(1), share = laws::smaller(T(motion.filling / T(drop_filling)), full);
@@ -375,25 +376,51 @@ class Body {
     if (motion.filling > full)
       heeded -= correction * (motion.filling - full);
     else
-      heeded += correction * (full - motion.filling) * covered(p.cell);
+      heeded += correction * (full - motion.filling) * covered(p);
     return heeded;
   }
 
-  /// How far a cell beside a plane wall that holds it is covered with material, 0 to 1: by the filling of the
-  /// node over it, and beside a wall of friction as far as the wall holds. Other cells are not.
-  T covered(const Cell<Dim>& cell) const {
-    constexpr double from = 0.7, wholly_from = 0.95;
+  /// How far a particle lies in material that covers a plane wall which holds it, 0 to 1. The first row of nodes at
+  /// the wall has a cover, by the filling of the row over it, and beside a wall of friction as far as the wall holds;
+  /// so has its mirror image behind the wall. All others have none, and particles take it up by their weights.
+  T covered(const Particle<T, Dim>& p) const {
     T most(0);
+    const Stencil<T, Dim> s = stencil(p);
     for (const Mirror& mirror : grid_.mirrors()) {
-      const auto a = static_cast<std::size_t>(mirror.axis);
-      if (mirror.wall == PlaneWall::slip || cell[a] != mirror.image) continue;
-      Cell<Dim> over = cell;
-      over[a] = mirror.second;
-      const T share =
-          laws::smaller(T((grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from)), T(1));
-      most = laws::larger(most, mirror.is_whole() ? share : T(planes_.holds(grid_.index(cell)) * share));
+      if (mirror.wall == PlaneWall::slip) continue;
+      const auto axis = static_cast<std::size_t>(mirror.axis);
+      if (std::abs(p.cell[axis] - mirror.image) > 1) continue;
+      T sum(0);
+      s.visit([&](std::size_t, const auto& at) {
+        Cell<Dim> node = p.cell;
+        for (std::size_t a = 0; a < Dim; ++a) node[a] += static_cast<int>(at[a]) - 1;
+        if (node[axis] != mirror.image && node[axis] != mirror.ghost) return;
+        node = before_walls(node);
+        const T cover = cover_of(grid_.wrapped(node), mirror);
+        sum += s.weight_of(at) * cover;
+      });
+      most = laws::larger(most, sum);
     }
     return most;
+  }
+
+  /// A node behind plane walls goes to its image.
+  Cell<Dim> before_walls(Cell<Dim> node) const {
+    for (const Mirror& mirror : grid_.mirrors()) {
+      const auto a = static_cast<std::size_t>(mirror.axis);
+      if (node[a] == mirror.ghost) node[a] = mirror.image;
+    }
+    return node;
+  }
+
+  /// Of a node of the first row at a wall.
+  T cover_of(const Cell<Dim>& node, const Mirror& mirror) const {
+    constexpr double from = 0.7, wholly_from = 0.95;
+    Cell<Dim> over = node;
+    over[static_cast<std::size_t>(mirror.axis)] = mirror.second;
+    const T share = (grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from);
+    const T cover = laws::larger(laws::smaller(share, T(1)), T(0));
+    return mirror.is_whole() ? cover : T(planes_.holds(grid_.index(node)) * cover);
   }
 
   // 6 ------------------------------------------------------------------------------------------------------

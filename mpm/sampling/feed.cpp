@@ -74,6 +74,10 @@ Feeds::Feeds(const SolverSettings& settings, int per_axis, bool half, double flo
 
 std::vector<Seed> Feeds::due(double time, double step) { return next(count_due(time), time, step); }
 
+void Feeds::pass_over(const std::vector<std::size_t>& counts) {
+  for (std::size_t f = 0; f < feeds_.size(); ++f) feeds_[f].pass_over(counts[f]);
+}
+
 std::vector<std::size_t> Feeds::count_due(double time) const {
   std::vector<std::size_t> counts;
   for (const Feed& feed : feeds_) counts.push_back(feed.count_due(time));

@@ -9,6 +9,9 @@
 
 namespace flowrest::mpm {
 
+/// Over which a feed's first discs take their speed, s.
+constexpr double first_feed_step = 1e-4;
+
 /// Keeps a nozzle's bore filled from its mouth to two cells above it, with discs of particles that stand where
 /// the column is at the moment they come. Material s metres up the column passes the mouth when s metres have
 /// been extruded; discs are equally thick, and the last one is cut where the column ends, so that all of
@@ -25,6 +28,8 @@ class Feed {
   /// The next `count` discs, whether they are due or not: what `due` gives of a feed that is a little faster or
   /// slower, disc by disc.
   std::vector<Seed> next(std::size_t count, double time, double step);
+  /// Takes the next `count` for come.
+  void pass_over(std::size_t count) { discs_ += count; }
   /// Takes those that are due at `time` for come, as where a run is gone on with.
   void skip_to(double time);
   std::size_t discs() const { return discs_; }
@@ -56,6 +61,7 @@ class Feeds {
   void skip_to(double time);
   double volume() const;
   /// Of each feed, as those of Feed.
+  void pass_over(const std::vector<std::size_t>& counts);
   std::vector<std::size_t> count_due(double time) const;
   std::vector<Seed> next(const std::vector<std::size_t>& counts, double time, double step);
 

@@ -19,61 +19,133 @@ FLOWREST_INLINE bool may_hold(PlaneWall wall) {
   return wall == PlaneWall::no_slip || wall == PlaneWall::friction;
 }
 
-/// How far the cells along plane walls that hold them are covered with material, from 0 to 1, for a tile's
-/// particles; null if its block has no such wall. Beside a wall of friction it counts as far as the wall
-/// holds: `holds` are of the block's nodes, null where there is no such wall.
-template <class T, int Dim, class Shape>
-const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena,
-                              const T* holds) {
-  struct Side {
-    int axis, cell, node;  ///< the cell at the wall, and which of its nodes along the axis is furthest off it
-    int held;              ///< which of them a wall of friction holds; -1: one of no slip
-  };
-  Side sides[2 * Dim];
+/// A plane wall that may hold what lies along it, as a tile sees it.
+struct HoldingSide {
+  int axis, cell;  ///< the cell at the wall, in the block
+  bool upper;
+  bool friction;  ///< else of no slip
+};
+
+/// The walls of a tile's block that may hold; returns how many. Cells next to those at a wall see it too.
+template <class T, int Dim>
+int holding_sides(const StepParameters<T>& step, const Tile<T, Dim>& tile, HoldingSide* sides) {
   int count = 0;
   for (int a = 0; a < Dim; ++a) {
     const AxisBounds& bounds = step.bounds[a];
     const int lower = bounds.lower_cell - tile.block.origin[a],
               upper = bounds.upper_cell - 1 - tile.block.origin[a];
-    const auto inside = [](int cell) { return cell >= 0 && cell < block_edge; };
-    const auto held = [](PlaneWall wall, int node) { return wall == PlaneWall::friction ? node : -1; };
-    constexpr int middle = Shape::nodes / 2;  // the first node inside, of linear functions that on the wall
-    if (may_hold(bounds.lower) && inside(lower))
-      sides[count++] = {a, lower, Shape::nodes - 1, held(bounds.lower, Shape::nodes == 3 ? middle : 0)};
-    if (may_hold(bounds.upper) && inside(upper)) sides[count++] = {a, upper, 0, held(bounds.upper, middle)};
+    if (may_hold(bounds.lower) && lower >= -1 && lower < block_edge)
+      sides[count++] = {a, lower, false, bounds.lower == PlaneWall::friction};
+    if (may_hold(bounds.upper) && upper >= 0 && upper <= block_edge)
+      sides[count++] = {a, upper, true, bounds.upper == PlaneWall::friction};
   }
-  if (count == 0) return nullptr;
+  return count;
+}
 
+/// How far a node over the first row at a wall is full, as the first row is covered by it.
+template <class T>
+FLOWREST_INLINE T cover(T filling) {
+  constexpr T span = T(1.0 / (wholly_covered_from - covered_from));
+  return minimum(maximum((filling - T(covered_from)) * span, T(0)), T(1));
+}
+
+/// Adds a wall's part for one cell. Quadratic functions: the first row of nodes inside has a cover, by the row over
+/// it and as far as a wall of friction holds there; so has its mirror image behind the wall; all others have none.
+/// Particles take it up with the functions' own weights, so that it neither jumps from cell to cell nor with height.
+template <class T, int Dim>
+void cover_cell(const StepParameters<T>& step, const Tile<T, Dim>& tile, const HoldingSide& side, int cell,
+                const int* place, const T* arena, const T* holds, const T* const* x, T* covered) {
+  const auto place_along = [&](int axis) { return place[axis == 0 ? 0 : axis + 3 - Dim]; };
+  const int layer = side.upper ? side.cell - place_along(side.axis) : place_along(side.axis) - side.cell;
+  if (layer < 0 || layer > 1) return;
+  const int second = side.upper ? layer : 2 - layer, first = side.upper ? 1 + layer : 1 - layer;
+  const int across[2] = {side.axis == 0 ? 1 : 0, side.axis == 2 ? 1 : 2};
+  // Behind another wall the body is mirrored.
+  const auto mirrored = [&](int axis, int node) {
+    const AxisBounds& b = step.bounds[axis];
+    const int at = place_along(axis) + tile.block.origin[axis];
+    const bool ghost = (node == 0 && b.lower != PlaneWall::none && at == b.lower_cell) ||
+                       (node == 2 && b.upper != PlaneWall::none && at == b.upper_cell - 1);
+    return ghost ? 1 : node;
+  };
+  T value[3][3];
+  for (int j = 0; j < 3; ++j)
+    for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {
+      int node[3] = {0, 0, 0};
+      node[across[0]] = mirrored(across[0], j);
+      if constexpr (Dim == 3) node[across[1]] = mirrored(across[1], k);
+      const auto index = [&](int along) {
+        node[side.axis] = along;
+        return cell_base<T, Dim>(cell) + (Dim == 3 ? arena_index<Dim>(node[0], node[1], node[2])
+                                                   : arena_index<Dim>(node[0], 0, node[1]));
+      };
+      value[j][k] = cover(arena[index(second) * node_values + record]);
+      if (side.friction) value[j][k] *= holds[index(first)];
+    }
+  const int begin = tile.cell_first(cell), end = begin + tile.cell_count(cell);
+  const T *up = x[side.axis], *one = x[across[0]], *two = x[Dim == 3 ? across[1] : 0];
+#pragma omp simd
+  for (int q = begin; q < end; ++q) {
+    const T height = side.upper ? T(1) - up[q] : up[q], left = T(1) - height;
+    const T down = layer == 0 ? T(1) - T(0.5) * height * height : T(0.5) * left * left;
+    T sum = T(0);
+    for (int j = 0; j < 3; ++j) {
+      T row = value[j][0];
+      if constexpr (Dim == 3)
+        row = Quadratic::weight(0, two[q]) * value[j][0] + Quadratic::weight(1, two[q]) * value[j][1] +
+              Quadratic::weight(2, two[q]) * value[j][2];
+      sum += Quadratic::weight(j, one[q]) * row;
+    }
+    covered[q] = maximum(covered[q], down * sum);
+  }
+}
+
+/// The same of linear functions, whose wall has a row of nodes of its own: for a cell at the wall as a whole, by the
+/// least filled of the nodes over it.
+template <class T, int Dim>
+void cover_cell_whole(const Tile<T, Dim>& tile, const HoldingSide& side, int cell, const int* place,
+                      const T* arena, const T* holds, T* covered) {
+  if (place[side.axis == 0 ? 0 : side.axis + 3 - Dim] != side.cell) return;
+  T least = T(1), least_held = T(1);
+  for (int i = 0; i < 2; ++i)
+    for (int j = Dim == 3 ? 0 : 1; j < 2; ++j) {
+      int node[3];
+      node[0] = node[1] = node[2] = i;
+      if constexpr (Dim == 3) node[side.axis == 2 ? 1 : 2] = j;
+      const auto node_at = [&](int along) {
+        node[side.axis] = along;
+        return cell_base<T, Dim>(cell) + (Dim == 3 ? arena_index<Dim>(node[0], node[1], node[2])
+                                                   : arena_index<Dim>(node[0], 0, node[1]));
+      };
+      least = minimum(least, arena[node_at(side.upper ? 0 : 1) * node_values + record]);
+      if (side.friction) least_held = minimum(least_held, holds[node_at(side.upper ? 1 : 0)]);
+    }
+  const T own = least_held * cover(least);
+  const int first = tile.cell_first(cell);
+  for (int q = first; q < first + tile.cell_count(cell); ++q) covered[q] = maximum(covered[q], own);
+}
+
+/// How far a tile's particles lie in covered cells along plane walls that hold them, from 0 to 1; null if its block
+/// has no such wall. Beside a wall of friction it counts as far as the wall holds: `holds` are of the block's nodes,
+/// null where there is no such wall.
+template <class T, int Dim, class Shape>
+const T* covered_beside_walls(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* arena,
+                              const T* holds, const T* const* x) {
+  HoldingSide sides[2 * Dim];
+  const int count = holding_sides<T, Dim>(step, tile, sides);
+  if (count == 0) return nullptr;
   T* covered = tile.fresh();
+  for (int q = 0; q < tile.count; ++q) covered[q] = T(0);
   for (int cell = tile.first_cell; cell < tile.last_cell; ++cell) {
+    if (tile.cell_count(cell) == 0) continue;
     int place[3];
     cell_coordinates<T, Dim>(cell, place);
-    T most = T(0);
     for (int n = 0; n < count; ++n) {
-      const Side& side = sides[n];
-      if (place[side.axis == 0 ? 0 : side.axis + 3 - Dim] != side.cell) continue;
-      // Of the nodes on the far layer, the one over the cell's middle; linear functions have none there, and
-      // all of theirs must be covered.
-      T least = T(1), least_held = T(1);
-      constexpr int from = Shape::nodes == 3 ? 1 : 0;
-      for (int i = from; i < 2; ++i)
-        for (int j = Dim == 3 ? from : 1; j < 2; ++j) {
-          int node[3];
-          node[0] = node[1] = node[2] = i;
-          if constexpr (Dim == 3) node[side.axis == 2 ? 1 : 2] = j;
-          const auto node_at = [&](int along) {
-            node[side.axis] = along;
-            return cell_base<T, Dim>(cell) + (Dim == 3 ? arena_index<Dim>(node[0], node[1], node[2])
-                                                       : arena_index<Dim>(node[0], 0, node[1]));
-          };
-          least = minimum(least, arena[node_at(side.node) * node_values + record]);
-          if (side.held >= 0) least_held = minimum(least_held, holds[node_at(side.held)]);
-        }
-      constexpr T span = T(1.0 / (wholly_covered_from - covered_from));
-      most = maximum(most, least_held * minimum((least - T(covered_from)) * span, T(1)));
+      if constexpr (Shape::nodes == 3)
+        cover_cell<T, Dim>(step, tile, sides[n], cell, place, arena, holds, x, covered);
+      else
+        cover_cell_whole<T, Dim>(tile, sides[n], cell, place, arena, holds, covered);
     }
-    const int first = tile.cell_first(cell);
-    for (int q = first; q < first + tile.cell_count(cell); ++q) covered[q] = most;
   }
   return covered;
 }

@@ -107,7 +107,7 @@ void make_strain(const StepParameters<T>& step, Tile<T, Dim>& tile, const T* are
     s.dilatation[q] = gradient_of(s, q, Axisymmetric).divergence();
   }
   if (filling)
-    heed_filling<T, Dim>(step, s, filling, covered_beside_walls<T, Dim, Shape>(step, tile, arena, holds),
+    heed_filling<T, Dim>(step, s, filling, covered_beside_walls<T, Dim, Shape>(step, tile, arena, holds, x),
                          count);
   if (planes) {
     give_dilatation<T, Dim>(tile, x, volume, s.dilatation, planes);
