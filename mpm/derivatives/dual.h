@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+/// These are the innermost operations of all: a call costs more than they do.
+#define FLOWREST_DUAL [[gnu::always_inline]]
+
 /// Numbers that carry derivatives.
 namespace flowrest::mpm::derivatives {
 
@@ -21,31 +24,31 @@ struct Dual {
   constexpr Dual() = default;
   constexpr Dual(double value_) : v(value_) {}  // NOLINT: a number is one without derivatives
 
-  Dual& operator+=(const Dual& o) {
-    v += o.v;
-    for (int i = 0; i < N; ++i) d[i] += o.d[i];
-    return *this;
+  FLOWREST_DUAL friend Dual operator+(const Dual& a, const Dual& b) {
+    Dual x(a.v + b.v);
+    for (int i = 0; i < N; ++i) x.d[i] = a.d[i] + b.d[i];
+    return x;
   }
-  Dual& operator-=(const Dual& o) {
-    v -= o.v;
-    for (int i = 0; i < N; ++i) d[i] -= o.d[i];
-    return *this;
+  FLOWREST_DUAL friend Dual operator-(const Dual& a, const Dual& b) {
+    Dual x(a.v - b.v);
+    for (int i = 0; i < N; ++i) x.d[i] = a.d[i] - b.d[i];
+    return x;
   }
-  Dual& operator*=(const Dual& o) {
-    for (int i = 0; i < N; ++i) d[i] = d[i] * o.v + v * o.d[i];
-    v *= o.v;
-    return *this;
+  FLOWREST_DUAL friend Dual operator*(const Dual& a, const Dual& b) {
+    Dual x(a.v * b.v);
+    for (int i = 0; i < N; ++i) x.d[i] = a.d[i] * b.v + a.v * b.d[i];
+    return x;
   }
-  Dual& operator/=(const Dual& o) {
-    const double per = 1.0 / o.v;
-    v /= o.v;
-    for (int i = 0; i < N; ++i) d[i] = (d[i] - v * o.d[i]) * per;
-    return *this;
+  FLOWREST_DUAL friend Dual operator/(const Dual& a, const Dual& b) {
+    Dual x(a.v / b.v);
+    const double per = 1.0 / b.v;
+    for (int i = 0; i < N; ++i) x.d[i] = (a.d[i] - x.v * b.d[i]) * per;
+    return x;
   }
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
-  friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
+  FLOWREST_DUAL Dual& operator+=(const Dual& o) { return *this = *this + o; }
+  FLOWREST_DUAL Dual& operator-=(const Dual& o) { return *this = *this - o; }
+  FLOWREST_DUAL Dual& operator*=(const Dual& o) { return *this = *this * o; }
+  FLOWREST_DUAL Dual& operator/=(const Dual& o) { return *this = *this / o; }
   friend Dual operator-(const Dual& a) { return scaled(-1.0, -a.v, a); }
   friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend constexpr bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }

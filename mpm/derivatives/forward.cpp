@@ -5,34 +5,6 @@ namespace flowrest::mpm::derivatives {
 
 namespace {
 
-/// A particle's values alone.
-template <class T, int Dim>
-plain::Particle<double, Dim> values_of(const plain::Particle<T, Dim>& p, bool thixotropic) {
-  plain::Particle<double, Dim> values;
-  values.cell = p.cell;
-  std::vector<double> numbers;
-  using plain::value;
-  plain::visit_state<Dim>(p, thixotropic, [&](const T& x) { numbers.push_back(value(x)); });
-  std::size_t next = 0;
-  plain::visit_state<Dim>(values, thixotropic, [&](double& x) { x = numbers[next++]; });
-  return values;
-}
-
-template <class Source>
-Surroundings<typename Source::Scalar> surroundings_of(const Source& source, double time) {
-  const auto x = source.numbers([&](const Variation& v) -> std::vector<double> {
-    const auto station = v.station(time);
-    return {v.settings.density, station[0], station[1]};
-  });
-  return {x[0], {x[1], x[2]}};
-}
-
-template <class T>
-Surroundings<double> values_of(const Surroundings<T>& s) {
-  using plain::value;
-  return {value(s.density), {value(s.station[0]), value(s.station[1])}};
-}
-
 /// Reads quantities off a replay: use(quantity, value, change), the change with its derivatives.
 template <int Dim, class R, class Use>
 void read(const R& replay, double time, const std::vector<const Quantity*>& quantities, const Use& use) {

@@ -31,4 +31,22 @@ std::vector<Readings> forward(const Variations&, const Recording&, const std::ve
 std::vector<std::vector<double>> replayed(const Variation&, const Variation& recorded, const Recording&,
                                           const std::vector<const Quantity*>&, const Watch& = {});
 
+/// What going backwards took.
+struct ReverseCost {
+  std::size_t snapshots = 0;         ///< states kept at most
+  std::size_t recomputed_steps = 0;  ///< made again, beside those that each adjoint makes
+  double memory = 0.0;               ///< bytes of the states kept
+};
+
+/// In words what reverse() does not serve of a scene; empty where it serves all.
+std::string not_served_in_reverse(const SolverSettings&);
+
+/// Reverse: the derivatives of readings at the recording's end by any number of keys, by one pass backwards for each
+/// quantity (reverse_step.h). States are kept in at most `memory` bytes, and made again where they were not, with the
+/// same bits.
+/// @throws runs::NumericsError where a step fails or a state made again has other bits; std::invalid_argument where
+/// the scene is not served.
+Readings reverse(const Variations&, const Recording&, const std::vector<const Quantity*>&, double memory,
+                 ReverseCost&, const Watch& = {});
+
 }  // namespace flowrest::mpm::derivatives

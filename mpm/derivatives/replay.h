@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "mpm/derivatives/dual.h"
+#include "mpm/derivatives/quantities.h"
 #include "mpm/derivatives/recording.h"
 #include "mpm/derivatives/variation.h"
 #include "mpm/plain/inputs.h"
@@ -164,18 +165,19 @@ class Arrivals {
     const auto counts = feeds_.count_due(step.end);
     return std::any_of(counts.begin(), counts.end(), [](std::size_t n) { return n > 0; });
   }
-  /// The particles that come after a step, which has to be the next one with any.
-  template <int Dim, class Source>
-  auto after(const Source& source, const StepTaken& step) {
-    const std::vector<std::size_t> counts = feeds_.count_due(step.end);
-    const auto particles = particles_of<Dim>(source, [&](const Variation& v) {
+  /// The seeds that come after a step, which has to be the next one with any, for every variation of the run.
+  auto seeds_after(const StepTaken& step) const {
+    return [counts = feeds_.count_due(step.end), before = so_far_, step](const Variation& v) {
       Feeds feeds = v.feeds;
-      feeds.pass_over(so_far_);
+      feeds.pass_over(before);
       return feeds.next(counts, step.end, step.step);
-    });
+    };
+  }
+  /// Takes them for come.
+  void pass(const StepTaken& step) {
+    const std::vector<std::size_t> counts = feeds_.count_due(step.end);
     feeds_.pass_over(counts);
     for (std::size_t f = 0; f < counts.size(); ++f) so_far_[f] += counts[f];
-    return particles;
   }
 
  private:
@@ -209,12 +211,32 @@ class Replay {
       require_stable(outcome.faults, value(outcome.dissipated), step.step);
       if (!arrivals_.come_after(step)) continue;
       auto particles = body_.particles();
-      for (auto& p : arrivals_.template after<Dim>(source_, step)) particles.push_back(std::move(p));
+      for (auto& p : particles_of<Dim>(source_, arrivals_.seeds_after(step)))
+        particles.push_back(std::move(p));
+      arrivals_.pass(step);
       body_.take(std::move(particles));
     }
   }
 
+  /// Where a replay stands, to go on from later.
+  struct State {
+    std::vector<plain::Particle<T, Dim>> particles;
+    Arrivals arrivals;
+    std::size_t made;
+  };
+  State state() const { return {body_.particles(), arrivals_, made_}; }
+  /// Goes back, or forth, to where it stood; goes on from there with the same bits. Walls of any shape start from the
+  /// last step's forces, which a state has not.
+  void restore(const State& state) {
+    body_.take(state.particles);
+    arrivals_ = state.arrivals;
+    made_ = state.made;
+  }
+
   const Body& body() const { return body_; }
+  Body& body() { return body_; }
+  std::size_t made() const { return made_; }
+  Arrivals& arrivals() { return arrivals_; }
   const Source& source() const { return source_; }
 
  private:
@@ -229,5 +251,34 @@ class Replay {
   Body body_;
   std::size_t made_ = 0;
 };
+
+/// A particle's values alone.
+template <class T, int Dim>
+plain::Particle<double, Dim> values_of(const plain::Particle<T, Dim>& p, bool thixotropic) {
+  plain::Particle<double, Dim> values;
+  values.cell = p.cell;
+  std::vector<double> numbers;
+  using plain::value;
+  plain::visit_state<Dim>(p, thixotropic, [&](const T& x) { numbers.push_back(value(x)); });
+  std::size_t next = 0;
+  plain::visit_state<Dim>(values, thixotropic, [&](double& x) { x = numbers[next++]; });
+  return values;
+}
+
+/// What readings need at a time (s) beside the particles.
+template <class Source>
+Surroundings<typename Source::Scalar> surroundings_of(const Source& source, double time) {
+  const auto x = source.numbers([&](const Variation& v) -> std::vector<double> {
+    const auto station = v.station(time);
+    return {v.settings.density, station[0], station[1]};
+  });
+  return {x[0], {x[1], x[2]}};
+}
+
+template <class T>
+Surroundings<double> values_of(const Surroundings<T>& s) {
+  using plain::value;
+  return {value(s.density), {value(s.station[0]), value(s.station[1])}};
+}
 
 }  // namespace flowrest::mpm::derivatives

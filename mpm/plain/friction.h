@@ -5,6 +5,11 @@
 #include "mpm/plain/grid.h"
 
 /// Coulomb's friction on plane walls along the grid.
+namespace flowrest::mpm::derivatives {
+template <int Dim>
+class StepAdjoint;
+}
+
 namespace flowrest::mpm::plain {
 
 /// Of the velocity at the wall half comes from the first node inside, half from the ghost node behind it. The
@@ -14,6 +19,12 @@ namespace flowrest::mpm::plain {
 /// step, of which particles keep a share.
 template <class T, int Dim>
 class PlaneFriction {
+  /// Goes it backwards (derivatives/reverse_step.h).
+  template <int>
+  friend class derivatives::StepAdjoint;
+  template <class, int>
+  friend class PlaneFriction;
+
  public:
   /// `coefficients`: of each axis' lower and upper wall.
   explicit PlaneFriction(const std::array<std::array<T, 2>, 3>& coefficients) : coefficients_(coefficients) {}
@@ -35,11 +46,11 @@ class PlaneFriction {
       grid.across(mirror.axis, mirror.image, mirror.second,
                   [&](std::size_t, std::size_t second) { pairs_[next++].second = second; });
     }
-    for (Pair& p : pairs_) relax(grid, p, false);
+    for (Pair& p : pairs_) relax(grid.node(p.first), grid.node(p.ghost), p, false);
   }
   /// The same once more, after other walls have changed the velocities: the two impulses together obey the law.
   void hold_again(Grid<T, Dim>& grid) {
-    for (Pair& p : pairs_) relax(grid, p, true);
+    for (Pair& p : pairs_) relax(grid.node(p.first), grid.node(p.ghost), p, true);
   }
   /// Takes the transfer's error out of the first nodes, in the share in which the wall holds (correct_transfer in
   /// step.h), and returns the walls' work on the material, J.
@@ -48,8 +59,10 @@ class PlaneFriction {
     for (const Pair& p : pairs_)
       if (p.pressed)
         for (std::size_t c = 0; c < Dim; ++c)
-          work += p.impulse[c] * at_wall(grid, p, &Node<T, Dim>::velocity, c);
-    for (const Pair& p : pairs_) correct_transfer(grid, p);
+          work += p.impulse[c] * at_wall(grid.node(p.first), grid.node(p.ghost), &Node<T, Dim>::velocity, c);
+    for (const Pair& p : pairs_)
+      if (p.second != absent)
+        correct_transfer(grid.node(p.first), grid.node(p.ghost), grid.node(p.second), p);
     for (const Pair& p : pairs_) holds_[p.first] = laws::larger(holds_[p.first], p.held);
     return work;
   }
@@ -71,24 +84,23 @@ class PlaneFriction {
     bool pressed;
   };
 
-  T at_wall(const Grid<T, Dim>& grid, const Pair& p, Part part, std::size_t c) const {
-    return T(0.5) * ((grid.node(p.first).*part)[c] + (grid.node(p.ghost).*part)[c]);
+  static T at_wall(const Node<T, Dim>& first, const Node<T, Dim>& ghost, Part part, std::size_t c) {
+    return T(0.5) * ((first.*part)[c] + (ghost.*part)[c]);
   }
 
-  void relax(Grid<T, Dim>& grid, Pair& p, bool again) const {
+  static void relax(Node<T, Dim>& first, Node<T, Dim>& ghost, Pair& p, bool again) {
     using std::sqrt;
-    Node<T, Dim>&first = grid.node(p.first), &ghost = grid.node(p.ghost);
     if (!(first.mass > T(0)) || !(ghost.mass > T(0))) return;
     const auto axis = static_cast<std::size_t>(p.axis);
     const T inertia = T(4) * first.mass * ghost.mass / (first.mass + ghost.mass);
     Vec<T, Dim> wanted;
     T square(0);
     for (std::size_t c = 0; c < Dim; ++c) {
-      wanted[c] = p.impulse[c] - inertia * at_wall(grid, p, &Node<T, Dim>::velocity, c);
+      wanted[c] = p.impulse[c] - inertia * at_wall(first, ghost, &Node<T, Dim>::velocity, c);
       if (c != axis) square += wanted[c] * wanted[c];
     }
-    const T change =
-        at_wall(grid, p, &Node<T, Dim>::velocity, axis) - at_wall(grid, p, &Node<T, Dim>::before, axis);
+    const T change = at_wall(first, ghost, &Node<T, Dim>::velocity, axis) -
+                     at_wall(first, ghost, &Node<T, Dim>::before, axis);
     const T pressing = laws::larger(T(0), T(p.pressing - T(p.inwards) * inertia * change));
     p.pressed = T(p.inwards) * wanted[axis] > T(0);
     p.pressing = p.pressed ? pressing : T(0);
@@ -116,10 +128,9 @@ class PlaneFriction {
     (ghost.*part)[c] = -(first.*part)[c];
   }
 
-  void correct_transfer(Grid<T, Dim>& grid, const Pair& p) const {
-    if (p.second == absent || !(p.held > T(0))) return;
-    Node<T, Dim>&first = grid.node(p.first), &ghost = grid.node(p.ghost);
-    const Node<T, Dim>& second = grid.node(p.second);
+  static void correct_transfer(Node<T, Dim>& first, Node<T, Dim>& ghost, const Node<T, Dim>& second,
+                               const Pair& p) {
+    if (!(p.held > T(0))) return;
     const T share =
         T(wall_transfer_correction) * known_profile<T>(second.mass, first.mass + ghost.mass) * p.held;
     for (const Part part : {&Node<T, Dim>::velocity, &Node<T, Dim>::before})

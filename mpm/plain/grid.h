@@ -151,7 +151,7 @@ class Grid {
   /// Calls use(from, to) for the nodes of a layer of an axis and those opposite them on another; neither may
   /// lie beyond the box, where nothing is.
   template <class Use>
-  void across(int axis, int from, int to, const Use& use) {
+  void across(int axis, int from, int to, const Use& use) const {
     if (!holds(axis, from) || !holds(axis, to)) return;
     const std::size_t stride = axes_[static_cast<std::size_t>(axis)].stride;
     const std::size_t layer = stride * static_cast<std::size_t>(axes_[static_cast<std::size_t>(axis)].count);
@@ -179,7 +179,8 @@ struct Stencil {
   std::array<std::array<std::size_t, 3>, Dim> node;         ///< contributions to indices
   std::array<std::array<T, 3>, Dim> weight, slope, offset;  ///< slopes and offsets in cells
 
-  Stencil(const Grid<T, Dim>& grid, const Cell<Dim>& cell, const Vec<T, Dim>& place) {
+  template <class NodesOfAnyScalar>
+  Stencil(const NodesOfAnyScalar& grid, const Cell<Dim>& cell, const Vec<T, Dim>& place) {
     for (std::size_t a = 0; a < Dim; ++a) {
       const T& x = place[a];
       const T below = T(1) - x, centred = x - T(0.5);

@@ -18,7 +18,7 @@ using test::Random;
 using test::Variant;
 
 constexpr int steps = 200;
-constexpr double allowed = 1e-11;
+constexpr double allowed = 2e-11;
 /// The sweeps of walls of any shape end at a tolerance of their own, and carry round-off from point to point.
 constexpr double allowed_in_contact = 1e-10;
 constexpr double gravity = 9.81;

@@ -20,6 +20,11 @@
 /// `Body::step` first, then its stages from top to bottom.
 ///
 /// Yu: Yu et al. 2026. Jiang: Jiang et al. 2015, APIC.
+namespace flowrest::mpm::derivatives {
+template <int Dim>
+class StepAdjoint;
+}
+
 namespace flowrest::mpm::plain {
 
 /// What the material is.
@@ -71,8 +76,85 @@ struct Outcome {
   std::uint32_t faults = 0;       ///< particles that moved further than a cell, or are no longer finite
 };
 
+/// The gradient L referred to the body in the middle of the step, L - dt/2 L L (Hughes and Winget 1980, Eq. 5): a
+/// motion x + dt v stretches by dt L and by half its square, which turns a spinning body into a growing one unless
+/// the strain says so.
+template <class T>
+Tensor<T> referred_to_midpoint(const Tensor<T>& gradient, const T& dt) {
+  const Tensor<T> square = gradient * gradient;
+  Tensor<T> referred = gradient;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) referred[i][j] -= T(0.5) * dt * square[i][j];
+  return referred;
+}
+
+/// What a particle makes of how full its surroundings are. With little around it, it is a drop, whose nodes
+/// carry nothing else and weigh next to nothing near a cell's face: the less there is, the less of the
+/// strain of volume it feels is its own. Where particles overlap they drifted together under shear, which
+/// no divergence sees: it is told that it is compressed, in proportion to the shearing. Beside a plane wall that
+/// holds, where material covers it, a gap is closed the same way. `correction`: 1/s, of the shearing.
+template <int Dim, class T>
+T heeded_dilatation(const T& dilatation, const T& filling, const T& covered, const T& correction) {
+  constexpr double drop_filling = 0.2;  // a plane surface has a half, an edge a quarter
+  const T full(1), share = laws::smaller(T(filling / T(drop_filling)), full);
+  T heeded = dilatation * share * share * (Dim == 3 ? share : full);
+  if (filling > full)
+    heeded -= correction * (filling - full);
+  else
+    heeded += correction * (full - filling) * covered;
+  return heeded;
+}
+
+/// Returns a trial stress to the law; gives its invariant after the step, Pa.
+template <class T, int Dim>
+T relaxed(const Material<T>& material, const T& dt, const T& shear, const T& grown, const Deviator<T>& trial,
+          Particle<T, Dim>& p) {
+  const laws::Trial<T> from{trial.invariant(), shear};
+  const laws::Relaxed<T> to = laws::visit(material.law, [&](auto law) {
+    using Law = decltype(law);
+    return material.thixotropic ? laws::Thixotropic<Law>::relax(material.parameters, material.structure, from,
+                                                                dt, p.flocculation, p.rate, grown)
+                                : Law::relax(material.parameters, from, p.rate);
+  });
+  p.stress = from.stress > T(0) ? T(to.stress / from.stress) * trial : trial;
+  p.rate = to.rate;
+  p.flocculation = to.flocculation;
+  return to.stress;
+}
+
+/// A fluid's stress, explicitly: that of its rate; `twice_rate` is 2 D*, whose invariant is the shear rate.
+template <class T, int Dim>
+T flowing(const Material<T>& material, const T& dt, const T& grown, const Deviator<T>& twice_rate,
+          Particle<T, Dim>& p) {
+  laws::Parameters<T> parameters = material.parameters;
+  if (material.thixotropic) {
+    p.flocculation = material.structure.stepped(p.flocculation, p.rate, dt);
+    parameters.yield_stress *= T(1) + p.flocculation;
+    parameters.yield_stress += grown;
+  }
+  p.rate = twice_rate.invariant();
+  const T stress = laws::visit(material.law, [&](auto law) { return law.stress(parameters, p.rate); });
+  p.stress = p.rate > T(0) ? T(stress / p.rate) * twice_rate : twice_rate;
+  return stress;
+}
+
+/// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/): a particle's new stress, rate and
+/// flocculation. Gives the stress' invariant, Pa. `grown`: what the yield stress has grown by with age, Pa.
+template <class T, int Dim>
+T stressed(const Material<T>& material, bool explicit_fluid, const T& dt, const T& grown,
+           const Tensor<T>& gradient, Particle<T, Dim>& p) {
+  const Deviator<T> rate = strain_rate_deviator(gradient);
+  if (explicit_fluid) return flowing(material, dt, grown, T(2) * rate, p);
+  const T shear = material.state.shear(p.volume_ratio) * dt;
+  return relaxed(material, dt, shear, grown, rotated(p.stress, gradient, dt) + T(2) * shear * rate, p);
+}
+
 template <class T, int Dim>
 class Body {
+  /// Goes the stages backwards (derivatives/reverse_step.h).
+  template <int>
+  friend class derivatives::StepAdjoint;
+
  public:
   using Vector = Vec<T, Dim>;
 
@@ -110,7 +192,8 @@ class Body {
     }
     outcome.wall_work += planes_.finish(grid_);
     hold_to_planes();
-    grid_to_particles(dt, keep);
+    grid_to_particles(keep);
+    for (Motion& motion : motions_) motion.gradient = referred_to_midpoint(motion.gradient, dt);
     average_dilatation();
     strain_to_stress(dt, material_.ageing.grown(T(time) + dt), outcome);
     move(time + value(dt), dt, outcome);
@@ -121,6 +204,8 @@ class Body {
 
   const std::vector<Particle<T, Dim>>& particles() const { return particles_; }
   const Grid<T, Dim>& grid() const { return grid_; }
+  /// Of each particle its number before the last sorting.
+  const std::vector<std::size_t>& came_from() const { return came_from_; }
   Contact<T, Dim>* walls() const { return walls_.get(); }
   /// Of the nozzle on the material in the last step, kg m/s.
   const Vector& nozzle_impulse() const { return nozzle_impulse_; }
@@ -297,10 +382,8 @@ class Body {
 
   /// Velocities and affine parts (Jiang, section 5.3; the weights' second moment is a quarter of the cell
   /// squared), and for the strain the velocity that moves a particle, its gradient, and how full its
-  /// surroundings are. The gradient L is referred to the body in the middle of the step, L - dt/2 L L (Hughes
-  /// and Winget 1980, Eq. 5): a motion x + dt v stretches by dt L and by half its square, which turns a
-  /// spinning body into a growing one unless the strain says so.
-  void grid_to_particles(const T& dt, const T& keep) {
+  /// surroundings are.
+  void grid_to_particles(const T& keep) {
     motions_.assign(particles_.size(), {});
     const T per_cell = T(1.0 / numerics_.cell), per_moment(4);
     for (std::size_t q = 0; q < particles_.size(); ++q) {
@@ -329,9 +412,6 @@ class Body {
         }
       });
       if (numerics_.axisymmetric) motion.gradient[2][2] = motion.velocity[0] / radius(p);
-      const Tensor<T> square = motion.gradient * motion.gradient;
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) motion.gradient[i][j] -= T(0.5) * dt * square[i][j];
     }
   }
 
@@ -343,7 +423,9 @@ class Body {
     std::vector<T> dilatation(particles_.size());
     for (std::size_t q = 0; q < particles_.size(); ++q) {
       dilatation[q] = motions_[q].gradient.trace();
-      if (numerics_.free_surface) dilatation[q] = heeded(particles_[q], motions_[q], dilatation[q]);
+      if (numerics_.free_surface)
+        dilatation[q] = heeded_dilatation<Dim>(dilatation[q], motions_[q].filling, coverage(q),
+                                               T(numerics_.density_correction) * particles_[q].rate);
     }
     if (!is_smooth()) {
       average_over_cells(dilatation);
@@ -363,26 +445,14 @@ class Body {
     mirror(&Average<T>::dilatation);
   }
 
-  /// What a particle makes of how full its surroundings are. With little around it, it is a drop, whose nodes
-  /// carry nothing else and weigh next to nothing near a cell's face: the less there is, the less of the
-  /// strain of volume it feels is its own. Where particles overlap they drifted together under shear, which
-  /// no divergence sees: it is told that it is compressed, in proportion to the shearing. Beside a plane wall that
-  /// holds, where material covers it, a gap is closed the same way.
-  T heeded(const Particle<T, Dim>& p, const Motion& motion, const T& dilatation) const {
-    constexpr double drop_filling = 0.2;  // a plane surface has a half, an edge a quarter
-    const T full(1), share = laws::smaller(T(motion.filling / T(drop_filling)), full);
-    const T correction = T(numerics_.density_correction) * p.rate;
-    T heeded = dilatation * share * share * (Dim == 3 ? share : full);
-    if (motion.filling > full)
-      heeded -= correction * (motion.filling - full);
-    else
-      heeded += correction * (full - motion.filling) * covered(p);
-    return heeded;
-  }
-
   /// How far a particle lies in material that covers a plane wall which holds it, 0 to 1. The first row of nodes at
   /// the wall has a cover, by the filling of the row over it, and beside a wall of friction as far as the wall holds;
   /// so has its mirror image behind the wall. All others have none, and particles take it up by their weights.
+  T coverage(std::size_t q) const {
+    const Particle<T, Dim>& p = particles_[q];
+    if (motions_[q].filling > T(1)) return T(0);  // nothing asks for it
+    return covered(p);
+  }
   T covered(const Particle<T, Dim>& p) const {
     T most(0);
     const Stencil<T, Dim> s = stencil(p);
@@ -425,51 +495,16 @@ class Body {
 
   // 6 ------------------------------------------------------------------------------------------------------
 
-  /// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/). `grown`: what the yield
-  /// stress has grown by with age, Pa.
+  /// New stresses (`stressed`). `grown`: what the yield stress has grown by with age, Pa.
   void strain_to_stress(const T& dt, const T& grown, Outcome<T>& outcome) {
     for (std::size_t q = 0; q < particles_.size(); ++q) {
       Particle<T, Dim>& p = particles_[q];
-      const Tensor<T>& l = motions_[q].gradient;
       p.volume_ratio *= growth(T(dt * motions_[q].dilatation));
       p.pressure = material_.state.pressure(p.volume_ratio);
-      const Deviator<T> rate = strain_rate_deviator(l);
-      const T shear = material_.state.shear(p.volume_ratio) * dt;
-      const T stress = numerics_.explicit_fluid
-                           ? flow(dt, grown, T(2) * rate, p)
-                           : relax(dt, shear, grown, rotated(p.stress, l, dt) + T(2) * shear * rate, p);
+      const T stress = stressed(material_, numerics_.explicit_fluid, dt, grown, motions_[q].gradient, p);
       outcome.dissipated += dt * volume_of(p) * stress * p.rate;
       outcome.largest_pressure = std::max(outcome.largest_pressure, value(p.pressure));
     }
-  }
-
-  /// Returns a trial stress to the law; gives its invariant after the step, Pa.
-  T relax(const T& dt, const T& shear, const T& grown, const Deviator<T>& trial, Particle<T, Dim>& p) const {
-    const laws::Trial<T> from{trial.invariant(), shear};
-    const laws::Relaxed<T> relaxed = laws::visit(material_.law, [&](auto law) {
-      using Law = decltype(law);
-      return material_.thixotropic ? laws::Thixotropic<Law>::relax(material_.parameters, material_.structure,
-                                                                   from, dt, p.flocculation, p.rate, grown)
-                                   : Law::relax(material_.parameters, from, p.rate);
-    });
-    p.stress = from.stress > T(0) ? T(relaxed.stress / from.stress) * trial : trial;
-    p.rate = relaxed.rate;
-    p.flocculation = relaxed.flocculation;
-    return relaxed.stress;
-  }
-
-  /// A fluid's stress, explicitly: that of its rate; `twice_rate` is 2 D*, whose invariant is the shear rate.
-  T flow(const T& dt, const T& grown, const Deviator<T>& twice_rate, Particle<T, Dim>& p) const {
-    laws::Parameters<T> parameters = material_.parameters;
-    if (material_.thixotropic) {
-      p.flocculation = material_.structure.stepped(p.flocculation, p.rate, dt);
-      parameters.yield_stress *= T(1) + p.flocculation;
-      parameters.yield_stress += grown;
-    }
-    p.rate = twice_rate.invariant();
-    const T stress = laws::visit(material_.law, [&](auto law) { return law.stress(parameters, p.rate); });
-    p.stress = p.rate > T(0) ? T(stress / p.rate) * twice_rate : twice_rate;
-    return stress;
   }
 
   // 7 ------------------------------------------------------------------------------------------------------
@@ -673,7 +708,12 @@ class Body {
       if (start[n + 1] > start[n]) cells_.emplace_back(start[n], start[n + 1]);
     }
     sorted_.resize(particles_.size());
-    for (const Particle<T, Dim>& p : particles_) sorted_[start[grid_.index(p.cell)]++] = p;
+    came_from_.resize(particles_.size());
+    for (std::size_t q = 0; q < particles_.size(); ++q) {
+      const std::size_t place = start[grid_.index(particles_[q].cell)]++;
+      sorted_[place] = particles_[q];
+      came_from_[place] = q;
+    }
     std::swap(particles_, sorted_);
   }
 
@@ -683,6 +723,7 @@ class Body {
   PlaneFriction<T, Dim> planes_;
   std::unique_ptr<Contact<T, Dim>> walls_;  ///< null where there are none but planes along the grid
   std::vector<Particle<T, Dim>> particles_, sorted_;
+  std::vector<std::size_t> came_from_;  ///< of each particle, its number before the last sorting
   std::vector<std::pair<std::size_t, std::size_t>> cells_;  ///< particles of each cell: from, to
   std::vector<Motion> motions_;
   Vector nozzle_impulse_{};

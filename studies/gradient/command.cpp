@@ -64,6 +64,17 @@ void add_command(CLI::App& app) {
   command->add_option("--set", options.set, "KEY=VALUE: override a key by its dotted path")
       ->allow_extra_args(false);
   command->add_option("-o,--output", arguments->output, "The run directory (out/SCENE/gradient-MODEL)");
+  command
+      ->add_option(
+          "--mode", options.mode,
+          "forward: by up to eight keys at once; reverse: by any number, for one quantity at a time; auto: "
+          "the cheaper one")
+      ->check(CLI::IsMember({"auto", "forward", "reverse"}))
+      ->capture_default_str();
+  command
+      ->add_option("--memory", options.memory,
+                   "For states that reverse keeps: 500M, 4G; others are made again (4G)")
+      ->transform(CLI::AsSizeValue(true));
   command->add_flag("--check", options.check, "Taylor remainders and central differences for every key");
   command->add_flag("--force", options.force, runs::force_help);
   command->add_flag("--json", arguments->json, "End with a machine-readable line");

@@ -132,6 +132,7 @@ class Work {
       quantities_.push_back(g.quantity);
       result_.gradients.push_back(std::move(g));
     }
+    choose_mode();
     result_.directory = options.output.empty() ? fs::path("out") / scene.name /
                                                      ("gradient-" + scenes::to_string(scene.material.model))
                                                : options.output;
@@ -187,11 +188,36 @@ class Work {
     };
   }
 
+  /// About how many runs by the plain step derivatives cost: forward by the eights of keys, reverse by quantities.
+  bool reverse_is_cheaper() const {
+    constexpr double by_eight[] = {0.0, 3.0, 4.5, 6.0, 6.0, 10.0, 10.0, 10.0, 10.0}, backwards = 12.0;
+    const std::size_t keys = keys_.size();
+    const double forwards = static_cast<double>(keys / 8) * by_eight[8] + by_eight[keys % 8];
+    return backwards * static_cast<double>(quantities_.size()) < forwards;
+  }
+
+  void choose_mode() {
+    const std::string refused = derivatives::not_served_in_reverse(variations_->centre().settings);
+    if (options_.mode == "reverse" && !refused.empty())
+      throw scenes::SceneError(fmt::format("{}: --mode reverse does not serve {}; allowed: --mode forward",
+                                           result_.scene.path.string(), refused));
+    const bool backwards =
+        options_.mode == "reverse" || (options_.mode == "auto" && refused.empty() && reverse_is_cheaper());
+    result_.mode = backwards ? "reverse" : "forward";
+  }
+
   void differentiate() {
-    result_.mode = "forward";
     const double begin = runs::cpu_seconds();
     runs::Progress progress("derivatives", 1.0, options_.quiet);
-    result_.over_time = derivatives::forward(*variations_, recording_, quantities_, watch(progress));
+    if (result_.mode == "forward") {
+      result_.over_time = derivatives::forward(*variations_, recording_, quantities_, watch(progress));
+    } else {
+      derivatives::ReverseCost cost;
+      result_.over_time = {derivatives::reverse(*variations_, recording_, quantities_, options_.memory, cost,
+                                                watch(progress))};
+      result_.cost.memory = cost.memory;
+      result_.cost.recomputed_steps = cost.recomputed_steps;
+    }
     result_.cost.gradient_cpu = runs::cpu_seconds() - begin;
     progress.finish(
         fmt::format("{} steps, {:.3g} CPU s", recording_.steps.size(), result_.cost.gradient_cpu));

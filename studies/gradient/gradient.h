@@ -22,6 +22,8 @@ struct Options {
   std::vector<std::string> of, by;  ///< quantities, and keys
   std::vector<std::string> sigma;   ///< "KEY=5%" or "KEY=2.5": standard uncertainties of keys
   std::filesystem::path output;     ///< empty: out/SCENE/gradient-MODEL
+  std::string mode = "auto";        ///< or "forward", "reverse"
+  double memory = 4e9;              ///< bytes at most for states kept to go backwards
   bool check = false, force = false, quiet = false;
 };
 
