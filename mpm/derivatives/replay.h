@@ -214,7 +214,7 @@ class Replay {
       for (auto& p : particles_of<Dim>(source_, arrivals_.seeds_after(step)))
         particles.push_back(std::move(p));
       arrivals_.pass(step);
-      body_.take(std::move(particles));
+      body_.take(particles);
     }
   }
 
@@ -225,6 +225,11 @@ class Replay {
     std::size_t made;
   };
   State state() const { return {body_.particles(), arrivals_, made_}; }
+  void store(State& state) const {
+    state.particles = body_.particles();
+    state.arrivals = arrivals_;
+    state.made = made_;
+  }
   /// Goes back, or forth, to where it stood; goes on from there with the same bits. Walls of any shape start from the
   /// last step's forces, which a state has not.
   void restore(const State& state) {

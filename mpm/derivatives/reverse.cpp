@@ -38,7 +38,7 @@ class Backwards {
     const std::size_t steps = recording_.rows.back().steps;
     const double time = recording_.rows.back().time;
     Readings readings{time, {}, {}};
-    kept_.push_back(run_.state());
+    keep();
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       key_.assign(variations_.keys(), 0.0);
       std::fill(bars_of_inputs_.numbers.begin(), bars_of_inputs_.numbers.end(), 0.0);
@@ -54,11 +54,11 @@ class Backwards {
         advance_to(step);
       };
       reversal.keep = [&] {
-        kept_.push_back(run_.state());
-        cost.snapshots = std::max(cost.snapshots, kept_.size());
+        keep();
+        cost.snapshots = std::max(cost.snapshots, count_);
       };
-      reversal.restore = [&] { run_.restore(kept_.back()); };
-      reversal.drop = [&] { kept_.pop_back(); };
+      reversal.restore = [&] { run_.restore(kept_[count_ - 1]); };
+      reversal.drop = [&] { --count_; };
       reversal.back = [&](std::size_t step) {
         back(step);
         if (watch)
@@ -74,6 +74,15 @@ class Backwards {
   }
 
  private:
+  /// Keeps the state that the run is in, in the place of one that was dropped where there is one.
+  void keep() {
+    if (count_ == kept_.size())
+      kept_.push_back(run_.state());
+    else
+      run_.store(kept_[count_]);
+    ++count_;
+  }
+
   /// So that a state that is made again is known to have the bits that it had.
   void check_bits() {
     std::uint64_t digest = 1469598103934665603ULL;
@@ -191,20 +200,19 @@ class Backwards {
     const typename Adjoint::Step step = step_of(taken);
     const bool come = run_.arrivals().come_after(taken);
     adjoint_.forwards(run_.body(), step);
-    Particles after = bars_;
     if (come) {
       auto arrivals = run_.arrivals();
       Particles all = run_.body().particles();
       const std::size_t here = all.size();
       const auto seeds_of = arrivals.seeds_after(taken);
       for (auto& p : particles_of<Dim>(run_.source(), seeds_of)) all.push_back(std::move(p));
-      const auto sorted = plain::body_of<double, Dim>(centre_.settings, inputs_, std::move(all));
+      const auto sorted = plain::body_of<double, Dim>(centre_.settings, inputs_, all);
       Particles apart(bars_.size());
       for (std::size_t i = 0; i < bars_.size(); ++i) apart[sorted.came_from()[i]] = bars_[i];
       add_seeds({apart.begin() + static_cast<std::ptrdiff_t>(here), apart.end()}, seeds_of);
-      after.assign(apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(here));
+      bars_.assign(apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(here));
     }
-    bars_ = adjoint_.backwards(run_.body(), step, after, bars_of_inputs_);
+    adjoint_.backwards(run_.body(), step, bars_, bars_of_inputs_);
     add(bars_of_inputs_.acceleration, [&](const Variation& v) {
       const auto a = acceleration_at(v.scene, taken.time);
       return std::vector<double>(a.begin(), a.begin() + Dim);
@@ -254,6 +262,7 @@ class Backwards {
   Run run_;
   Adjoint adjoint_;
   std::vector<typename Run::State> kept_;
+  std::size_t count_ = 0;               ///< of those that are kept; others wait to be used again
   std::vector<std::uint64_t> digests_;  ///< of the state after so many steps; 0: not made yet
   Particles bars_;                      ///< of the particles in the state that is gone back to
   InputBars<Dim> bars_of_inputs_;

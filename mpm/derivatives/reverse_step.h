@@ -80,16 +80,29 @@ class StepAdjoint {
     unfolded_mass_.clear();
     for (const Node& node : body.grid_.nodes()) unfolded_mass_.push_back(node.mass);
     body.forces_to_velocities(dt, step.acceleration, step.keep);
-    folded_ = body.grid_.nodes();
     nozzled_.clear();
     if constexpr (Dim == 3)
       for (const NozzleInputs& nozzle : step.nozzles) {
-        nozzled_.push_back(body.grid_.nodes());
-        body.hold_to_nozzle(motion_of<double>(nozzle, nozzle.numbers, step.step));
+        const auto motion = motion_of<double>(nozzle, nozzle.numbers, step.step);
+        auto& seen = nozzled_.emplace_back();
+        for (std::size_t n = 0; n < body.grid_.size(); ++n)
+          if (body.carries(body.grid_.node(n)) && motion.at(place_of(body, n)))
+            seen.push_back({n, body.grid_.node(n).velocity});
+        body.hold_to_nozzle(motion);
       }
     rub(body);
-    corrected_ = body.grid_.nodes();
-    body.hold_to_planes();
+    corrected_.clear();
+    for (const plain::Mirror& mirror : body.grid_.mirrors()) {
+      auto& seen = corrected_.emplace_back();
+      if (mirror.wall == PlaneWall::no_slip)
+        body.grid_.across(mirror.axis, mirror.image, mirror.second,
+                          [&](std::size_t first, std::size_t second) {
+                            const Node &one = body.grid_.node(first), &two = body.grid_.node(second);
+                            if (one.mass > 0.0) seen.push_back({first, second, one, two});
+                          });
+      body.correct_transfer(mirror);
+    }
+    body.mirror_velocities();
     body.grid_to_particles(step.keep);
     gradient_.resize(old_.size());
     filling_.resize(old_.size());
@@ -115,8 +128,8 @@ class StepAdjoint {
   }
 
   /// Goes the step backwards that `forwards` has made. `after`: bars of the particles after the step, in the order that
-  /// the body then has. Returns the bars of those before it, in the order that they had.
-  Particles backwards(const Body& body, const Step& step, const Particles& after, InputBars<Dim>& inputs) {
+  /// the body then has; they become the bars of those before it, in the order that they had.
+  void backwards(const Body& body, const Step& step, Particles& after, InputBars<Dim>& inputs) {
     const std::size_t count = old_.size();
     bars_.assign(count, Particle{});
     for (Particle& b : bars_) b.volume_ratio = 0.0;  // a particle's is 1 to begin with
@@ -138,31 +151,30 @@ class StepAdjoint {
     forces_back(body, step, inputs);
     particles_to_grid_back(body, step, inputs);
     averages_back(body, inputs);
-    return bars_;
+    after.swap(bars_);
   }
 
  private:
   using Place = Dual<Dim>;  ///< by a particle's place
   using Stencil = plain::Stencil<Place, Dim>;
   using Friction = plain::PlaneFriction<double, Dim>;
+  /// Two nodes before the transfer's correction of the first.
+  struct Corrected {
+    std::size_t first, second;
+    Node one, two;
+  };
   static constexpr int material_numbers = 15;
 
   /// Friction on plane walls, pair by pair, with the nodes that each has found.
   void rub(Body& body) {
     auto& planes = body.planes_;
     auto& grid = body.grid_;
-    // `hold` makes the pairs; their nodes as they were are put back, and each is held once more, seen.
-    const std::vector<Node> found = grid.nodes();
-    planes.hold(grid);
+    planes.find_pairs(grid);
     relaxed_.clear();
     taken_out_.clear();
     pairs_.clear();
     if (planes.pairs_.empty()) return;
-    grid.nodes() = found;
     for (auto& p : planes.pairs_) {
-      p.impulse = {};
-      p.pressing = p.held = 0.0;
-      p.pressed = false;
       relaxed_.push_back({grid.node(p.first), grid.node(p.ghost)});
       Friction::relax(grid.node(p.first), grid.node(p.ghost), p, false);
     }
@@ -584,43 +596,24 @@ class StepAdjoint {
         behind = Node{};
       });
     }
-    // The transfer's correction along walls of no slip, from the last one to the first; what each has found is made
-    // again from what was there before them all.
-    std::vector<std::vector<Node>> found;
-    std::vector<Node> nodes = corrected_;
-    for (const plain::Mirror& mirror : mirrors) {
-      found.push_back(nodes);
-      if (mirror.wall != PlaneWall::no_slip) continue;
-      grid.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
-        if (!(nodes[first].mass > 0.0)) return;
-        const double share = wall_transfer_correction * known_profile(nodes[second].mass, nodes[first].mass);
-        for (std::size_t i = 0; i < Dim; ++i) {
-          nodes[first].velocity[i] -= share * (nodes[second].velocity[i] - 3.0 * nodes[first].velocity[i]);
-          nodes[first].before[i] -= share * (nodes[second].before[i] - 3.0 * nodes[first].before[i]);
-        }
-      });
-    }
-    for (std::size_t m = mirrors.size(); m-- > 0;) {
-      const plain::Mirror& mirror = mirrors[m];
-      if (mirror.wall != PlaneWall::no_slip) continue;
-      grid.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
-        const Node &one = found[m][first], &two = found[m][second];
-        if (!(one.mass > 0.0)) return;
-        Dual<2> mass1(one.mass), mass2(two.mass);
+    // The transfer's correction along walls of no slip, from the last one to the first.
+    for (std::size_t m = mirrors.size(); m-- > 0;)
+      for (std::size_t i = corrected_[m].size(); i-- > 0;) {
+        const Corrected& seen = corrected_[m][i];
+        Dual<2> mass1(seen.one.mass), mass2(seen.two.mass);
         mass1.d[0] = mass2.d[1] = 1.0;
         const Dual<2> share = Dual<2>(wall_transfer_correction) * known_profile(mass2, mass1);
         double share_bar = 0.0;
         for (const auto part : {&Node::velocity, &Node::before})
-          for (std::size_t i = 0; i < Dim; ++i) {
-            double &bar1 = (nodes_[first].*part)[i], &bar2 = (nodes_[second].*part)[i];
-            share_bar -= bar1 * ((two.*part)[i] - 3.0 * (one.*part)[i]);
+          for (std::size_t c = 0; c < Dim; ++c) {
+            double &bar1 = (nodes_[seen.first].*part)[c], &bar2 = (nodes_[seen.second].*part)[c];
+            share_bar -= bar1 * ((seen.two.*part)[c] - 3.0 * (seen.one.*part)[c]);
             bar2 -= share.v * bar1;
             bar1 += 3.0 * share.v * bar1;
           }
-        nodes_[first].mass += share_bar * share.d[0];
-        nodes_[second].mass += share_bar * share.d[1];
-      });
-    }
+        nodes_[seen.first].mass += share_bar * share.d[0];
+        nodes_[seen.second].mass += share_bar * share.d[1];
+      }
   }
 
   // 2 --------------------------------------------------------------------------------------------------------
@@ -718,23 +711,25 @@ class StepAdjoint {
           x[i].d[i] = 1.0;
         }
         const NozzleMotion<D> motion = motion_of<D>(step.nozzles[k], x, step.step);
-        for (std::size_t n = 0; n < nodes_.size(); ++n) {
-          const Node& node = nozzled_[k][n];
-          if (!body.carries(node)) continue;
-          const auto cell = body.grid_.cell(n);
-          mpm::Vector place{};
-          for (std::size_t a = 0; a < Dim; ++a) place[a] = (cell[a] + 0.5) * cell_;
-          const auto held = motion.at(place);
+        for (const auto& [n, velocity] : nozzled_[k]) {
+          const auto held = motion.at(place_of(body, n));
           if (!held) continue;
           D reading(0.0);
           for (std::size_t a = 0; a < Dim; ++a) {
             double& bar = nodes_[n].velocity[a];
-            reading += D(bar) * held->share * (held->velocity[a] - D(node.velocity[a]));
+            reading += D(bar) * held->share * (held->velocity[a] - D(velocity[a]));
             bar *= 1.0 - held->share.v;
           }
           for (std::size_t i = 0; i < 7; ++i) inputs.nozzles[k][i] += reading.d[i];
         }
       }
+  }
+
+  mpm::Vector place_of(const Body& body, std::size_t node) const {
+    const auto cell = body.grid_.cell(node);
+    mpm::Vector place{};
+    for (std::size_t a = 0; a < Dim; ++a) place[a] = (cell[a] + 0.5) * cell_;
+    return place;
   }
 
   /// v = (momentum + impulse) / M, before = keep momentum / M, of folded nodes.
@@ -744,7 +739,7 @@ class StepAdjoint {
     const auto& mirrors = grid.mirrors();
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       Node& bar = nodes_[n];
-      const Node& node = folded_[n];
+      const Node& node = body.grid_.node(n);  // of mirrored ones the bars are nought
       if (!body.carries(node)) {
         bar.velocity = bar.before = {};
         continue;
@@ -945,8 +940,9 @@ class StepAdjoint {
   // ... and by node.
   std::vector<plain::Average<double>> before_, dilatations_;  ///< of the state before it, and of its strain
   std::vector<double> unfolded_mass_;
-  std::vector<Node> folded_, corrected_;    ///< as they were folded, and before the transfer's correction
-  std::vector<std::vector<Node>> nozzled_;  ///< before each nozzle
+  std::vector<std::vector<Corrected>> corrected_;  ///< by mirror
+  /// Nodes that each nozzle holds, and their velocities before.
+  std::vector<std::vector<std::pair<std::size_t, plain::Vec<double, Dim>>>> nozzled_;
   std::vector<typename Friction::Pair> pairs_;
   std::vector<std::array<Node, 2>> relaxed_;    ///< a pair before it is held
   std::vector<std::array<Node, 3>> taken_out_;  ///< and before its correction, with the second node

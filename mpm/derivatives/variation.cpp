@@ -19,9 +19,13 @@ std::vector<Seed> seeds_of_start(const scenes::Scene& scene, Feeds feeds) {
   return feeds.any() ? feeds.due(0.0, first_feed_step) : seed_particles(scene);
 }
 
+/// What the law reads of the settings' numbers.
 std::vector<double> numbers_of(const SolverSettings& settings) {
   std::vector<double> numbers;
-  const auto inputs = plain::inputs_of<double>(settings);
+  auto inputs = plain::inputs_of<double>(settings);
+  for (const laws::Parameter parameter : laws::every_parameter)
+    if (!laws::needs(settings.law, parameter))
+      inputs.material.parameters.*laws::member_of<double>(parameter) = 0.0;
   plain::visit_numbers(inputs, [&](double number) { numbers.push_back(number); });
   return numbers;
 }

@@ -31,6 +31,12 @@ class PlaneFriction {
 
   /// Holds new velocities.
   void hold(Grid<T, Dim>& grid) {
+    find_pairs(grid);
+    for (Pair& p : pairs_) relax(grid.node(p.first), grid.node(p.ghost), p, false);
+  }
+
+ private:
+  void find_pairs(const Grid<T, Dim>& grid) {
     pairs_.clear();
     holds_.assign(grid.size(), T(0));
     for (const Mirror& mirror : grid.mirrors()) {
@@ -46,8 +52,9 @@ class PlaneFriction {
       grid.across(mirror.axis, mirror.image, mirror.second,
                   [&](std::size_t, std::size_t second) { pairs_[next++].second = second; });
     }
-    for (Pair& p : pairs_) relax(grid.node(p.first), grid.node(p.ghost), p, false);
   }
+
+ public:
   /// The same once more, after other walls have changed the velocities: the two impulses together obey the law.
   void hold_again(Grid<T, Dim>& grid) {
     for (Pair& p : pairs_) relax(grid.node(p.first), grid.node(p.ghost), p, true);

@@ -70,11 +70,10 @@ inline Numerics numerics_of(const SolverSettings& s) {
 
 template <class T, int Dim>
 Body<T, Dim> body_of(const SolverSettings& s, const Inputs<T>& inputs,
-                     std::vector<Particle<T, Dim>> particles) {
+                     const std::vector<Particle<T, Dim>>& particles) {
   std::unique_ptr<Contact<T, Dim>> walls;
   if (!s.walls.empty()) walls = std::make_unique<Contact<T, Dim>>(s.walls, inputs.friction, s.cell, s.bounds);
-  return Body<T, Dim>(inputs.material, numerics_of(s), std::move(walls), std::move(particles),
-                      inputs.plane_friction);
+  return Body<T, Dim>(inputs.material, numerics_of(s), std::move(walls), particles, inputs.plane_friction);
 }
 
 /// Share of their own velocity that particles keep over a step, whose transfer smooths once in

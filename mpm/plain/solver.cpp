@@ -43,8 +43,8 @@ std::vector<Particle<T, Dim>> particles_of(const SolverSettings& settings, const
 template <class T, int Dim>
 class PlainSolver final : public Solver {
  public:
-  PlainSolver(const SolverSettings& settings, std::vector<Particle<T, Dim>> particles)
-      : settings_(settings), body_(body_of<T, Dim>(settings, inputs_of<T>(settings), std::move(particles))) {}
+  PlainSolver(const SolverSettings& settings, const std::vector<Particle<T, Dim>>& particles)
+      : settings_(settings), body_(body_of<T, Dim>(settings, inputs_of<T>(settings), particles)) {}
 
   PlainSolver(const SolverSettings& settings, const StoredState& state)
       : PlainSolver(settings, particles_of<T, Dim>(settings, state)) {
@@ -109,7 +109,7 @@ class PlainSolver final : public Solver {
     }
     if (leaving.count > 0) use(leaving);
     for (const Seed& seed : come) particles.push_back(particle_of<T, Dim>(settings_, seed));
-    body_.take(std::move(particles));
+    body_.take(particles);
   }
 
   void visit_motion(const std::function<void(const ParticleBatch&)>& use) override { use(motion()); }

@@ -160,18 +160,18 @@ class Body {
 
   /// `friction`: of the plane walls of friction among `numerics.bounds`, of each axis' lower and upper one.
   Body(const Material<T>& material, const Numerics& numerics, std::unique_ptr<Contact<T, Dim>> walls,
-       std::vector<Particle<T, Dim>> particles, const std::array<std::array<T, 2>, 3>& friction = {})
+       const std::vector<Particle<T, Dim>>& particles, const std::array<std::array<T, 2>, 3>& friction = {})
       : material_(material),
         numerics_(numerics),
         grid_(numerics.bounds),
         planes_(friction),
         walls_(std::move(walls)) {
-    take(std::move(particles));
+    take(particles);
   }
 
   /// Takes these particles instead of those that it has.
-  void take(std::vector<Particle<T, Dim>> particles) {
-    particles_ = std::move(particles);
+  void take(const std::vector<Particle<T, Dim>>& particles) {
+    particles_ = particles;
     cover_and_sort();
     update_volumes(T(0));
   }
@@ -342,7 +342,11 @@ class Body {
 
   /// The mirrored body behind plane walls.
   void hold_to_planes() {
-    correct_transfer();
+    for (const Mirror& mirror : grid_.mirrors()) correct_transfer(mirror);
+    mirror_velocities();
+  }
+
+  void mirror_velocities() {
     for (const Mirror& mirror : grid_.mirrors())
       grid_.across(mirror.axis, mirror.ghost, mirror.image, [&](std::size_t ghost, std::size_t image) {
         Node<T, Dim>& behind = grid_.node(ghost);
@@ -362,20 +366,18 @@ class Body {
   /// the integral over the places in a filled cell. With the second difference v2 - 3 v1 = 2 b h^2 of the
   /// first two nodes that is taken out again: B / 2 / (1 - 3 B / 2) = 1/18. Where the second node holds
   /// little the profile is not known.
-  void correct_transfer() {
-    for (const Mirror& mirror : grid_.mirrors()) {
-      if (mirror.wall != PlaneWall::no_slip) continue;
-      grid_.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
-        Node<T, Dim>& one = grid_.node(first);
-        const Node<T, Dim>& two = grid_.node(second);
-        if (!(one.mass > T(0))) return;
-        const T share = T(wall_transfer_correction) * known_profile(two.mass, one.mass);
-        for (std::size_t i = 0; i < Dim; ++i) {
-          one.velocity[i] -= share * (two.velocity[i] - T(3) * one.velocity[i]);
-          one.before[i] -= share * (two.before[i] - T(3) * one.before[i]);
-        }
-      });
-    }
+  void correct_transfer(const Mirror& mirror) {
+    if (mirror.wall != PlaneWall::no_slip) return;
+    grid_.across(mirror.axis, mirror.image, mirror.second, [&](std::size_t first, std::size_t second) {
+      Node<T, Dim>& one = grid_.node(first);
+      const Node<T, Dim>& two = grid_.node(second);
+      if (!(one.mass > T(0))) return;
+      const T share = T(wall_transfer_correction) * known_profile(two.mass, one.mass);
+      for (std::size_t i = 0; i < Dim; ++i) {
+        one.velocity[i] -= share * (two.velocity[i] - T(3) * one.velocity[i]);
+        one.before[i] -= share * (two.before[i] - T(3) * one.before[i]);
+      }
+    });
   }
 
   // 4 ------------------------------------------------------------------------------------------------------
