@@ -24,7 +24,7 @@ struct Recorded {
   std::vector<scenes::NumberAt> keys;
   std::unique_ptr<Variations> variations;
   Recording recording;
-  std::vector<const Quantity*> quantities;
+  std::vector<Quantity> quantities;
   runs::Table last;  ///< history.csv
 
   Recorded(const std::string& name, const std::vector<std::string>& set, const std::vector<std::string>& by,
@@ -44,7 +44,7 @@ struct Recorded {
       return scenes::with_numbers(scene, numbers);
     });
     for (const std::string& one : of)
-      quantities.push_back(&derivatives::quantity_named(one, variations->centre()));
+      quantities.push_back(derivatives::quantity_named(one, variations->centre()));
     const runs::TemporaryFolder folder;
     RunOptions options;
     options.directory = folder.path() / "run";
@@ -76,7 +76,7 @@ void expect_the_same_both_ways(const Recorded& run, double memory = 4e9, double 
     for (std::size_t k = 0; k < run.keys.size(); ++k) {
       EXPECT_NE(one.slope[q][k], 0.0) << run.keys[k].path;
       EXPECT_NEAR(other.slope[q][k], one.slope[q][k], allowed * std::abs(one.slope[q][k]))
-          << run.quantities[q]->name << " by " << run.keys[k].path;
+          << run.quantities[q].name << " by " << run.keys[k].path;
     }
   }
 }

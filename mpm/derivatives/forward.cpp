@@ -7,15 +7,15 @@ namespace {
 
 /// Reads quantities off a replay: use(quantity, value, change), the change with its derivatives.
 template <int Dim, class R, class Use>
-void read(const R& replay, double time, const std::vector<const Quantity*>& quantities, const Use& use) {
+void read(const R& replay, double time, const std::vector<Quantity>& quantities, const Use& use) {
   using T = typename R::T;
   const Variation& recorded = replay.source().recorded();
-  const Surroundings<T> around = surroundings_of(replay.source(), time);
   std::vector<plain::Particle<double, Dim>> values;
   for (const auto& p : replay.body().particles())
     values.push_back(values_of<T, Dim>(p, recorded.settings.thixotropic));
   for (std::size_t q = 0; q < quantities.size(); ++q) {
-    const Linearised at(*quantities[q], recorded, values, values_of(around));
+    const Surroundings<T> around = surroundings_of(replay.source(), time, quantities[q]);
+    const Linearised at(quantities[q], recorded, values, values_of(around));
     T change(0);
     for (const auto& p : replay.body().particles()) change += at.part<T, Dim>(p, around);
     use(q, at.value(), change);
@@ -24,8 +24,7 @@ void read(const R& replay, double time, const std::vector<const Quantity*>& quan
 
 template <int N, int Dim>
 void forward_by(const Variations& variations, std::size_t first, const Recording& recording,
-                const std::vector<const Quantity*>& quantities, std::vector<Readings>& rows,
-                const Watch& watch) {
+                const std::vector<Quantity>& quantities, std::vector<Readings>& rows, const Watch& watch) {
   const DualSource<N> source(variations, first);
   Replay<DualSource<N>, Dim> replay(source, recording);
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -43,8 +42,7 @@ void forward_by(const Variations& variations, std::size_t first, const Recording
 
 template <int Dim>
 void forward_in(const Variations& variations, const Recording& recording,
-                const std::vector<const Quantity*>& quantities, std::vector<Readings>& rows,
-                const Watch& watch) {
+                const std::vector<Quantity>& quantities, std::vector<Readings>& rows, const Watch& watch) {
   for (std::size_t first = 0; first < variations.keys();) {
     const std::size_t left = variations.keys() - first;
     const auto by = [&](auto width) {
@@ -65,8 +63,7 @@ void forward_in(const Variations& variations, const Recording& recording,
 template <int Dim>
 std::vector<std::vector<double>> replayed_in(const Variation& of, const Variation& recorded,
                                              const Recording& recording,
-                                             const std::vector<const Quantity*>& quantities,
-                                             const Watch& watch) {
+                                             const std::vector<Quantity>& quantities, const Watch& watch) {
   Replay<PlainSource, Dim> replay(PlainSource(of, recorded), recording);
   std::vector<std::vector<double>> rows;
   for (const Recording::Row& row : recording.rows) {
@@ -81,7 +78,7 @@ std::vector<std::vector<double>> replayed_in(const Variation& of, const Variatio
 }  // namespace
 
 std::vector<Readings> forward(const Variations& variations, const Recording& recording,
-                              const std::vector<const Quantity*>& quantities, const Watch& watch) {
+                              const std::vector<Quantity>& quantities, const Watch& watch) {
   std::vector<Readings> rows;
   for (const Recording::Row& row : recording.rows)
     rows.push_back(
@@ -95,8 +92,7 @@ std::vector<Readings> forward(const Variations& variations, const Recording& rec
 }
 
 std::vector<std::vector<double>> replayed(const Variation& of, const Variation& recorded,
-                                          const Recording& recording,
-                                          const std::vector<const Quantity*>& quantities,
+                                          const Recording& recording, const std::vector<Quantity>& quantities,
                                           const Watch& watch) {
   return recorded.settings.dimension == 3 ? replayed_in<3>(of, recorded, recording, quantities, watch)
                                           : replayed_in<2>(of, recorded, recording, quantities, watch);

@@ -23,13 +23,13 @@ using Watch = std::function<void(double)>;
 /// Forward: the recorded run over dual numbers, by up to eight keys at once. Costs a run by the plain step times 3 to
 /// 10 for every eight keys. @return at every row of the recording
 /// @throws runs::NumericsError where a step fails.
-std::vector<Readings> forward(const Variations&, const Recording&, const std::vector<const Quantity*>&,
+std::vector<Readings> forward(const Variations&, const Recording&, const std::vector<Quantity>&,
                               const Watch& = {});
 
 /// The readings of another variation of the recorded run, with the same steps.
 /// @return by row of the recording, and quantity
 std::vector<std::vector<double>> replayed(const Variation&, const Variation& recorded, const Recording&,
-                                          const std::vector<const Quantity*>&, const Watch& = {});
+                                          const std::vector<Quantity>&, const Watch& = {});
 
 /// What going backwards took.
 struct ReverseCost {
@@ -46,7 +46,7 @@ std::string not_served_in_reverse(const SolverSettings&);
 /// same bits.
 /// @throws runs::NumericsError where a step fails or a state made again has other bits; std::invalid_argument where
 /// the scene is not served.
-Readings reverse(const Variations&, const Recording&, const std::vector<const Quantity*>&, double memory,
+Readings reverse(const Variations&, const Recording&, const std::vector<Quantity>&, double memory,
                  ReverseCost&, const Watch& = {});
 
 }  // namespace flowrest::mpm::derivatives

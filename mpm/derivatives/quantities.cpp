@@ -93,21 +93,40 @@ double place_of_largest(double low, double high, double grid, const Function& f)
 
 }  // namespace
 
-std::vector<const Quantity*> quantities_of(const Variation& of) {
-  std::vector<const Quantity*> own;
+std::vector<Quantity> quantities_of(const Variation& of) {
+  std::vector<Quantity> own;
   for (const Quantity& q : quantities())
-    if (has(of, q.reading)) own.push_back(&q);
+    if (has(of, q.reading)) own.push_back(q);
   return own;
 }
 
-const Quantity& quantity_named(const std::string& name, const Variation& of) {
+Quantity quantity_named(const std::string& asked, const Variation& of) {
+  const auto at = asked.find('@');
+  const std::string name = asked.substr(0, at);
   std::vector<std::string> names;
-  for (const Quantity* q : quantities_of(of)) {
-    if (name == q->name || name == q->column) return *q;
+  for (Quantity q : quantities_of(of)) {
     // Spreads and fronts of a depth end where the mass does.
-    if (name == runs::column::spread.name && q->reading == Reading::spread) return *q;
-    if (name == runs::column::front.name && q->reading == Reading::front) return *q;
-    names.emplace_back(q->name);
+    const bool of_depth = (name == runs::column::spread.name && q.reading == Reading::spread) ||
+                          (name == runs::column::front.name && q.reading == Reading::front);
+    names.push_back(q.name);
+    if (name != q.name && name != q.column && !of_depth) continue;
+    if (at == std::string::npos) return q;
+    std::size_t end = 0;
+    double place = -1.0;
+    try {
+      place = std::stod(asked.substr(at + 1), &end);
+    } catch (const std::exception&) {
+      end = 0;
+    }
+    const bool in_section = std::holds_alternative<scenes::SectionGauge>(of.pieces.gauged);
+    if (!in_section || end != asked.size() - at - 1 || !(place > 0.0))
+      throw scenes::SceneError(fmt::format(
+          "{}: {}: allowed after @: metres above 0 from where the nozzle begins, for sections of printed strands",
+          of.scene.path.string(), asked));
+    q.place = place;
+    q.name = fmt::format("{}@{:g}", q.name, place);
+    q.column = "";
+    return q;
   }
   throw scenes::SceneError(fmt::format("{}: no derivative is taken of \"{}\"; allowed: {}",
                                        of.scene.path.string(), name, fmt::join(names, ", ")));
@@ -117,7 +136,7 @@ template <int Dim>
 Linearised::Linearised(const Quantity& quantity, const Variation& of,
                        const std::vector<plain::Particle<double, Dim>>& particles,
                        const Surroundings<double>& around)
-    : quantity_(&quantity), cell_(of.settings.cell), factor_(of.pieces.whole_over_computed) {
+    : quantity_(quantity), cell_(of.settings.cell), factor_(of.pieces.whole_over_computed) {
   double mass = 0.0;
   for (const auto& p : particles) mass += p.mass;
   const auto sum_at = [&](double level) {

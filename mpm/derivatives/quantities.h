@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,20 +37,22 @@ enum class Reading {
 /// A reading by its name, and for which scenes it is.
 struct Quantity {
   Reading reading;
-  const char* name;
+  std::string name;    ///< with the place, "smooth_strand_width_mm@0.016"
   const char* column;  ///< of history.csv that it is the smooth twin of; empty: of none
   const char* unit;
   double per_si;  ///< the unit's number for one in SI units
   const char* meaning;
   bool same;  ///< the column itself is smooth, and this is it
+  /// m along the path from where the nozzle begins: of a section that is read there and not behind the nozzle.
+  std::optional<double> place = {};
 };
 const std::vector<Quantity>& quantities();
 
 /// Those that a scene has.
-std::vector<const Quantity*> quantities_of(const Variation&);
-/// The quantity that a name stands for, its own or its column's.
+std::vector<Quantity> quantities_of(const Variation&);
+/// The quantity that a name stands for, its own or its column's; of a section with "@" and a place.
 /// @throws scenes::SceneError naming those that the scene has.
-const Quantity& quantity_named(const std::string&, const Variation&);
+Quantity quantity_named(const std::string&, const Variation&);
 
 /// The quadratic B-spline over `x` cells, which integrates to 1, and its integral from minus infinity.
 template <class T>
@@ -91,12 +94,12 @@ class Linearised {
              const Surroundings<double>&);
 
   /// In the quantity's unit; not a number where there is nothing to read.
-  double value() const { return quantity_->per_si * value_; }
+  double value() const { return quantity_.per_si * value_; }
 
   /// What a particle adds to the reading's change: only its derivatives mean anything. In the quantity's unit.
   template <class T, int Dim>
   T part(const plain::Particle<T, Dim>& p, const Surroundings<T>& around) const {
-    return T(quantity_->per_si) * own_part<T, Dim>(p, around);
+    return T(quantity_.per_si) * own_part<T, Dim>(p, around);
   }
 
  private:
@@ -132,7 +135,7 @@ class Linearised {
   template <class T, int Dim>
   T term(const plain::Particle<T, Dim>& p, const Surroundings<T>& around) const {
     const T h(cell_);
-    switch (quantity_->reading) {
+    switch (quantity_.reading) {
       case Reading::rms_radius:
         return p.mass * radius_squared<T, Dim>(p);
       case Reading::spread:
@@ -172,7 +175,7 @@ class Linearised {
   /// What a sum is divided by, where it is a mean.
   template <class T, int Dim>
   T weight(const plain::Particle<T, Dim>& p) const {
-    if (quantity_->reading == Reading::plug_velocity)
+    if (quantity_.reading == Reading::plug_velocity)
       return p.mass * spline(T((along<T, Dim>(p, 1) - T(level_)) / T(cell_)));
     return p.mass;
   }
@@ -184,7 +187,7 @@ class Linearised {
   }
 
   bool is_mean() const {
-    switch (quantity_->reading) {
+    switch (quantity_.reading) {
       case Reading::rms_radius:
       case Reading::mean_height:
       case Reading::mean_velocity:
@@ -197,7 +200,7 @@ class Linearised {
     }
   }
   bool is_quantile() const {
-    return quantity_->reading == Reading::spread || quantity_->reading == Reading::front;
+    return quantity_.reading == Reading::spread || quantity_.reading == Reading::front;
   }
 
   template <class T, int Dim>
@@ -217,7 +220,7 @@ class Linearised {
     return sum;
   }
 
-  const Quantity* quantity_;
+  Quantity quantity_;
   double cell_, factor_;
   double level_ = 0.0;                       ///< m
   double patch_ = 0.0, patch_weight_ = 0.0;  ///< m; per m2, in a plane per m

@@ -270,11 +270,12 @@ plain::Particle<double, Dim> values_of(const plain::Particle<T, Dim>& p, bool th
   return values;
 }
 
-/// What readings need at a time (s) beside the particles.
+/// What a reading needs at a time (s) beside the particles.
 template <class Source>
-Surroundings<typename Source::Scalar> surroundings_of(const Source& source, double time) {
+Surroundings<typename Source::Scalar> surroundings_of(const Source& source, double time,
+                                                      const Quantity& quantity) {
   const auto x = source.numbers([&](const Variation& v) -> std::vector<double> {
-    const auto station = v.station(time);
+    const auto station = v.station(time, quantity.place);
     return {v.settings.density, station[0], station[1]};
   });
   return {x[0], {x[1], x[2]}};

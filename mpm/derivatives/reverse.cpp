@@ -33,7 +33,7 @@ class Backwards {
     plain::visit_numbers(inputs_, [&](double) { bars_of_inputs_.numbers.push_back(0.0); });
   }
 
-  Readings make(const std::vector<const Quantity*>& quantities, double memory, ReverseCost& cost,
+  Readings make(const std::vector<Quantity>& quantities, double memory, ReverseCost& cost,
                 const Watch& watch) {
     const std::size_t steps = recording_.rows.back().steps;
     const double time = recording_.rows.back().time;
@@ -44,7 +44,7 @@ class Backwards {
       std::fill(bars_of_inputs_.numbers.begin(), bars_of_inputs_.numbers.end(), 0.0);
       run_.restore(kept_.front());
       advance_to(steps);
-      readings.value.push_back(begin(*quantities[q], time));
+      readings.value.push_back(begin(quantities[q], time));
       const double state =
           static_cast<double>(run_.body().particles().size()) * static_cast<double>(sizeof(Particle));
       const auto room = static_cast<std::size_t>(std::clamp(memory / state, 2.0, 1e9));
@@ -114,7 +114,7 @@ class Backwards {
   /// Bars of the particles at the end; returns the reading.
   double begin(const Quantity& quantity, double time) {
     const Particles& particles = run_.body().particles();
-    const auto around = surroundings_of(run_.source(), time);
+    const auto around = surroundings_of(run_.source(), time, quantity);
     const Linearised at(quantity, centre_, particles, around);
     constexpr int width = Dim == 3 ? 12 : 10;
     using D = Dual<width>;
@@ -150,7 +150,7 @@ class Backwards {
       for (double& x : of_surroundings) x += take();
     }
     add(of_surroundings, [&](const Variation& v) -> std::vector<double> {
-      const auto station = v.station(time);
+      const auto station = v.station(time, quantity.place);
       return {v.settings.density, station[0], station[1]};
     });
     return at.value();
@@ -276,7 +276,7 @@ std::string not_served_in_reverse(const SolverSettings& settings) {
 }
 
 Readings reverse(const Variations& variations, const Recording& recording,
-                 const std::vector<const Quantity*>& quantities, double memory, ReverseCost& cost,
+                 const std::vector<Quantity>& quantities, double memory, ReverseCost& cost,
                  const Watch& watch) {
   const SolverSettings& settings = variations.centre().settings;
   if (const std::string what = not_served_in_reverse(settings); !what.empty())

@@ -85,7 +85,7 @@ Variation::Variation(const scenes::Scene& of)
             scene.thixotropy ? scene.thixotropy->initial_flocculation : 0.0),
       seeds(seeds_of_start(scene, feeds)) {}
 
-std::array<double, 2> Variation::station(double time) const {
+std::array<double, 2> Variation::station(double time, const std::optional<double>& place) const {
   const auto* gauge = std::get_if<scenes::SectionGauge>(&pieces.gauged);
   std::array<double, 2> between{};
   if (!gauge) return between;
@@ -93,6 +93,10 @@ std::array<double, 2> Variation::station(double time) const {
     if (time <= feed.begins_at) continue;
     const double until = std::min(time, feed.gone_at);
     const double begin = feed.mouth(feed.begins_at)[0], axis = feed.mouth(until)[0];
+    if (place) {
+      const double middle = axis > begin ? begin + *place : begin - *place;
+      return {middle - settings.cell, middle + settings.cell};
+    }
     if (std::abs(axis - begin) < gauge->behind + gauge->length) continue;
     const double way = axis > begin ? 1.0 : -1.0;
     const double near = axis - way * gauge->behind, far = near - way * gauge->length;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,9 @@ struct Variation {
 
   explicit Variation(const scenes::Scene&);
 
-  /// Two numbers along the strand (m) between which a section is read behind the nozzle at a time, as the section
-  /// gauge does; both nought where there is none.
-  std::array<double, 2> station(double time) const;
+  /// Two numbers along the strand (m) between which a section is read: behind the nozzle at a time, as the section
+  /// gauge does, or over two cells about a `place` (m from where the nozzle begins); both nought where there is none.
+  std::array<double, 2> station(double time, const std::optional<double>& place) const;
 };
 
 /// A scene, and the scenes about it in which one key each is a little larger or smaller: from them the derivatives

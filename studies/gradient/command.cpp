@@ -14,12 +14,11 @@ namespace {
 
 void print(const Result& result) {
   for (const Gradient& g : result.gradients) {
-    fmt::print("{} = {:.6g} {}\n", g.quantity->name, g.value, g.quantity->unit);
-    if (g.asked != g.quantity->name)
-      fmt::print("  in place of {}, which jumps as particles cross its bins{}\n", g.asked,
-                 g.column
-                     ? fmt::format("; {} reads {:.6g} {}", g.quantity->column, *g.column, g.quantity->unit)
-                     : "");
+    fmt::print("{} = {:.6g} {}\n", g.quantity.name, g.value, g.quantity.unit);
+    if (g.asked != g.quantity.name && !g.reaches && !g.quantity.place)
+      fmt::print(
+          "  in place of {}, which jumps as particles cross its bins{}\n", g.asked,
+          g.column ? fmt::format("; {} reads {:.6g} {}", g.quantity.column, *g.column, g.quantity.unit) : "");
     for (const Derivative& d : g.by) {
       fmt::print("  by {:<34} {:>13.6g}   elasticity {:>9.5f}", d.key.path, d.value, d.elasticity);
       if (d.check)
@@ -29,7 +28,7 @@ void print(const Result& result) {
       fmt::print("\n");
     }
     if (g.has_sigma())
-      fmt::print("  input uncertainty ± {:.4g} {}\n", g.input_uncertainty(), g.quantity->unit);
+      fmt::print("  input uncertainty ± {:.4g} {}\n", g.input_uncertainty(), g.quantity.unit);
     if (!g.doubt.empty()) fmt::print("  {}\n", g.doubt);
   }
   fmt::print("{} CPU s for the run, {:.3g} for its derivatives\n{}\n",

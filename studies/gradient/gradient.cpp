@@ -8,6 +8,7 @@
 
 #include "mpm/plain/solver.h"
 #include "mpm/solver/settings.h"
+#include "runs/console.h"
 #include "runs/csv.h"
 #include "runs/machine.h"
 #include "runs/process.h"
@@ -90,6 +91,21 @@ std::vector<std::optional<double>> sigmas_of(const Options& options,
   return sigmas;
 }
 
+/// When a series reaches a value: between which rows, and the share of the way from one to the next.
+struct Crossing {
+  std::size_t row;  ///< the one before it
+  double share;
+};
+std::optional<Crossing> crossing_of(const std::vector<double>& series, double value) {
+  for (std::size_t r = 0; r + 1 < series.size(); ++r) {
+    const double a = series[r] - value, b = series[r + 1] - value;
+    if (std::isfinite(a) && std::isfinite(b) && a != b && (a <= 0.0) != (b <= 0.0))
+      return Crossing{r, a / (a - b)};
+  }
+  return std::nullopt;
+}
+double between(double a, double b, double share) { return a + share * (b - a); }
+
 /// The slope of the logarithms of remainders over steps, of those above round-off.
 double slope_of(const std::vector<Remainder>& remainders, double round_off, bool& linear) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
@@ -118,11 +134,23 @@ class Work {
     variations_ = std::make_unique<derivatives::Variations>(
         names, values, [this](const std::vector<double>& at) { return scene_at(at); });
     std::vector<std::string> of = options.of;
-    if (of.empty()) of.emplace_back(derivatives::quantities_of(variations_->centre()).front()->name);
+    if (of.empty()) of.emplace_back(derivatives::quantities_of(variations_->centre()).front().name);
     for (const std::string& name : of) {
       Gradient g;
       g.asked = name;
-      g.quantity = &derivatives::quantity_named(name, variations_->centre());
+      const auto equals = name.find('=');
+      g.quantity = derivatives::quantity_named(name.substr(0, equals), variations_->centre());
+      if (equals != std::string::npos) {
+        std::size_t end = 0;
+        try {
+          g.reaches = std::stod(name.substr(equals + 1), &end);
+        } catch (const std::exception&) {
+          end = 0;
+        }
+        if (end == 0 || end != name.size() - equals - 1)
+          throw scenes::SceneError(fmt::format("--of {}: allowed after =: the value that is reached, in {}",
+                                               name, g.quantity.unit));
+      }
       for (std::size_t k = 0; k < keys_.size(); ++k) {
         Derivative d;
         d.key = keys_[k];
@@ -130,6 +158,14 @@ class Work {
         g.by.push_back(d);
       }
       quantities_.push_back(g.quantity);
+      if (g.reaches) {
+        g.reached_name = g.quantity.name;
+        g.reached_unit = g.quantity.unit;
+        g.quantity.name = fmt::format("time_s at {}={:g}", g.quantity.name, *g.reaches);
+        g.quantity.unit = "s";
+        g.quantity.column = "";
+        g.quantity.meaning = "the time at which that is reached, between the rows of history.csv";
+      }
       result_.gradients.push_back(std::move(g));
     }
     choose_mode();
@@ -176,8 +212,8 @@ class Work {
     result_.cost.steps = recording_.steps.size();
     const runs::Table history = runs::read_csv(result_.directory / "history.csv");
     for (Gradient& g : result_.gradients)
-      if (*g.quantity->column && history.has(g.quantity->column) && history.rows() > 0)
-        g.column = history.at(g.quantity->column).back();
+      if (*g.quantity.column && history.has(g.quantity.column) && history.rows() > 0)
+        g.column = history.at(g.quantity.column).back();
   }
 
   derivatives::Watch watch(runs::Progress& progress) const {
@@ -201,8 +237,14 @@ class Work {
     if (options_.mode == "reverse" && !refused.empty())
       throw scenes::SceneError(fmt::format("{}: --mode reverse does not serve {}; allowed: --mode forward",
                                            result_.scene.path.string(), refused));
-    const bool backwards =
-        options_.mode == "reverse" || (options_.mode == "auto" && refused.empty() && reverse_is_cheaper());
+    const bool times = std::any_of(result_.gradients.begin(), result_.gradients.end(),
+                                   [](const Gradient& g) { return g.reaches.has_value(); });
+    if (options_.mode == "reverse" && times)
+      throw scenes::SceneError(fmt::format(
+          "{}: --mode reverse does not serve the time at which a value is reached; allowed: --mode forward",
+          result_.scene.path.string()));
+    const bool backwards = options_.mode == "reverse" ||
+                           (options_.mode == "auto" && refused.empty() && !times && reverse_is_cheaper());
     result_.mode = backwards ? "reverse" : "forward";
   }
 
@@ -224,13 +266,38 @@ class Work {
     const derivatives::Readings& last = result_.over_time.back();
     for (std::size_t q = 0; q < quantities_.size(); ++q) {
       Gradient& g = result_.gradients[q];
-      g.value = last.value[q];
+      const Slopes at = g.reaches ? slopes_at_crossing(q) : Slopes{last.value[q], last.slope[q]};
+      g.value = at.value;
       for (std::size_t k = 0; k < keys_.size(); ++k) {
-        g.by[k].value = last.slope[q][k];
+        g.by[k].value = at.slope[k];
         g.by[k].elasticity = g.by[k].value * keys_[k].value / g.value;
         if (!std::isfinite(g.by[k].value)) fail(g, k);
       }
     }
+  }
+
+  struct Slopes {
+    double value;
+    std::vector<double> slope;
+  };
+  /// Of the time at which a quantity reaches a value: the quantity's change at a fixed time, over how fast it goes.
+  Slopes slopes_at_crossing(std::size_t q) const {
+    const auto& rows = result_.over_time;
+    const Gradient& g = result_.gradients[q];
+    std::vector<double> series;
+    for (const auto& row : rows) series.push_back(row.value[q]);
+    const auto at = crossing_of(series, *g.reaches);
+    if (!at)
+      throw scenes::SceneError(fmt::format(
+          "{}: {} never reaches {:g} {} in this run; allowed: a value between {:.6g} and {:.6g}",
+          result_.scene.path.string(), g.reached_name, *g.reaches, g.reached_unit,
+          *std::min_element(series.begin(), series.end()), *std::max_element(series.begin(), series.end())));
+    const auto &before = rows[at->row], &after = rows[at->row + 1];
+    const double speed = (after.value[q] - before.value[q]) / (after.time - before.time);
+    Slopes slopes{between(before.time, after.time, at->share), {}};
+    for (std::size_t k = 0; k < keys_.size(); ++k)
+      slopes.slope.push_back(-between(before.slope[q][k], after.slope[q][k], at->share) / speed);
+    return slopes;
   }
 
   /// Names when a derivative was lost.
@@ -242,7 +309,7 @@ class Work {
     throw runs::NumericsError(fmt::format(
         "{}: the derivative of {} by {} is not finite after {:g} s, or there is nothing to read; the run itself is "
         "in {}",
-        result_.scene.path.string(), g.quantity->name, keys_[key].path, since, result_.directory.string()));
+        result_.scene.path.string(), g.quantity.name, keys_[key].path, since, result_.directory.string()));
   }
 
   /// The readings at the end with keys moved by these shares of their values.
@@ -252,9 +319,23 @@ class Work {
     if (runs::InterruptGuard::count() > 0)
       throw runs::Interrupted("interrupted before the gradient was checked; the same command makes it");
     const auto other = variations_->moved(values);
-    derivatives::Recording end = recording_;
-    end.rows = {recording_.rows.back()};
-    return derivatives::replayed(*other, variations_->centre(), end, quantities_).front();
+    // Times need all rows, readings at the end the last one.
+    const bool times = std::any_of(result_.gradients.begin(), result_.gradients.end(),
+                                   [](const Gradient& g) { return g.reaches.has_value(); });
+    derivatives::Recording made = recording_;
+    if (!times) made.rows = {recording_.rows.back()};
+    const auto rows = derivatives::replayed(*other, variations_->centre(), made, quantities_);
+    std::vector<double> readings = rows.back();
+    for (std::size_t q = 0; q < readings.size(); ++q) {
+      const auto& reaches = result_.gradients[q].reaches;
+      if (!reaches) continue;
+      std::vector<double> series;
+      for (const auto& row : rows) series.push_back(row[q]);
+      const auto at = crossing_of(series, *reaches);
+      readings[q] = at ? between(made.rows[at->row].time, made.rows[at->row + 1].time, at->share)
+                       : std::numeric_limits<double>::quiet_NaN();
+    }
+    return readings;
   }
 
   /// One random direction of all keys, each moved about as much of its value.
@@ -266,6 +347,7 @@ class Work {
       up[k] = check_step * size(random) * (random() % 2 == 0 ? 1.0 : -1.0);
       down[k] = -up[k];
     }
+    if (!options_.quiet) runs::say(stderr, "derivatives: two runs by the plain step check them\n");
     const double begin = runs::cpu_seconds();
     const std::vector<double> above = at(up), below = at(down);
     result_.cost.plain_cpu = 0.5 * (runs::cpu_seconds() - begin);
@@ -330,7 +412,7 @@ class Work {
   Result result_;
   std::vector<scenes::NumberAt> keys_;
   std::unique_ptr<derivatives::Variations> variations_;
-  std::vector<const derivatives::Quantity*> quantities_;
+  std::vector<derivatives::Quantity> quantities_;
   derivatives::Recording recording_;
 };
 

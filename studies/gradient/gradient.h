@@ -59,8 +59,11 @@ struct Derivative {
 
 /// One quantity's derivatives.
 struct Gradient {
-  const mpm::derivatives::Quantity* quantity = nullptr;
-  std::string asked;             ///< the name it was asked for by
+  mpm::derivatives::Quantity quantity{};
+  std::string asked;  ///< the name it was asked for by
+  /// Of the time at which a quantity reaches a value: that value, in its unit, and the quantity's own name and unit.
+  std::optional<double> reaches = {};
+  std::string reached_name = {}, reached_unit = {};
   double value = 0.0;            ///< in its unit
   std::optional<double> column;  ///< what the column of history.csv that it stands for reads
   std::vector<Derivative> by;

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 /// The quantity's unit per the key's.
 std::string unit_of(const Gradient& g, const Derivative& d) {
-  const std::string above = g.quantity->unit;
+  const std::string above = g.quantity.unit;
   if (d.key.unit.empty()) return above;
   return fmt::format("{} / ({})", above.empty() ? "1" : above, d.key.unit);
 }
@@ -32,12 +32,12 @@ Json json_of(const Check& c) {
 }
 
 Json json_of(const Gradient& g, const Result& result) {
-  Json json = {{"quantity", g.quantity->name},
+  Json json = {{"quantity", g.quantity.name},
                {"asked_for", g.asked},
-               {"meaning", g.quantity->meaning},
+               {"meaning", g.quantity.meaning},
                {"value", g.value},
-               {"unit", g.quantity->unit},
-               {"column", *g.quantity->column ? Json(g.quantity->column) : Json()},
+               {"unit", g.quantity.unit},
+               {"column", *g.quantity.column ? Json(g.quantity.column) : Json()},
                {"column_value", g.column ? Json(*g.column) : Json()},
                {"derivatives", Json::array()}};
   for (const Derivative& d : g.by) {
@@ -85,7 +85,7 @@ Json json_of(const Gradient& g, const Result& result) {
       if (d.sigma)
         shares.push_back(
             {{"key", d.key.path}, {"sigma", *d.sigma}, {"share", std::pow(d.value * *d.sigma / whole, 2.0)}});
-    json["input_uncertainty"] = {{"standard", whole}, {"unit", g.quantity->unit}, {"of", shares}};
+    json["input_uncertainty"] = {{"standard", whole}, {"unit", g.quantity.unit}, {"of", shares}};
   }
   return json;
 }
@@ -94,8 +94,8 @@ std::string table_of(const Result& result) {
   std::string text = "quantity,value,unit,key,at,derivative,derivative_unit,elasticity\n";
   for (const Gradient& g : result.gradients)
     for (const Derivative& d : g.by)
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", g.quantity->name, scenes::exact_text(g.value),
-                          g.quantity->unit, d.key.path, scenes::exact_text(d.key.value),
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", g.quantity.name, scenes::exact_text(g.value),
+                          g.quantity.unit, d.key.path, scenes::exact_text(d.key.value),
                           scenes::exact_text(d.value), unit_of(g, d), scenes::exact_text(d.elasticity));
   return text;
 }
@@ -106,7 +106,7 @@ std::string table_over_time(const Result& result) {
     for (std::size_t q = 0; q < result.gradients.size(); ++q)
       for (std::size_t k = 0; k < result.gradients[q].by.size(); ++k)
         text += fmt::format("{},{},{},{},{}\n", scenes::exact_text(row.time),
-                            result.gradients[q].quantity->name, scenes::exact_text(row.value[q]),
+                            result.gradients[q].quantity.name, scenes::exact_text(row.value[q]),
                             result.gradients[q].by[k].key.path, scenes::exact_text(row.slope[q][k]));
   return text;
 }

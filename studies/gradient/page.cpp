@@ -39,11 +39,11 @@ std::vector<std::size_t> by_weight(const Gradient& g) {
 
 Bars tornado(const Gradient& g) {
   Bars bars;
-  bars.id = id_for("tornado-" + std::string(g.quantity->name));
-  bars.title = fmt::format("What {} hangs on", g.quantity->name);
+  bars.id = id_for("tornado-" + std::string(g.quantity.name));
+  bars.title = fmt::format("What {} hangs on", g.quantity.name);
   bars.caption = "The elasticity is by how many per cent the quantity changes for one per cent of a key.";
   bars.x = {.name = "elasticity", .unit = "% per %"};
-  Bars::Group group{.name = g.quantity->name};
+  Bars::Group group{.name = g.quantity.name};
   for (const std::size_t k : by_weight(g)) {
     bars.categories.push_back(g.by[k].key.path);
     group.values.push_back(g.by[k].elasticity);
@@ -55,8 +55,8 @@ Bars tornado(const Gradient& g) {
 Plot over_time(const Result& result, std::size_t q) {
   const Gradient& g = result.gradients[q];
   Plot plot;
-  plot.id = id_for("time-" + std::string(g.quantity->name));
-  plot.title = fmt::format("How the derivatives of {} build up", g.quantity->name);
+  plot.id = id_for("time-" + std::string(g.quantity.name));
+  plot.title = fmt::format("How the derivatives of {} build up", g.quantity.name);
   plot.caption =
       "Each point is the elasticity of a run that ends there. Where it swings without end, the derivative is one "
       "of the steps and not of the physics.";
@@ -79,13 +79,13 @@ Plot over_time(const Result& result, std::size_t q) {
 
 Plot taylor(const Gradient& g) {
   Plot plot;
-  plot.id = id_for("taylor-" + std::string(g.quantity->name));
-  plot.title = fmt::format("Taylor remainders of {}", g.quantity->name);
+  plot.id = id_for("taylor-" + std::string(g.quantity.name));
+  plot.title = fmt::format("Taylor remainders of {}", g.quantity.name);
   plot.caption =
       "What is left of a change after the derivative's share is taken off. It falls as the square of the step where "
       "the derivative is right, down to round-off.";
   plot.x = {.name = "step of the key", .unit = "% of its value", .logarithmic = true};
-  plot.y = {.name = "remainder", .unit = g.quantity->unit, .logarithmic = true};
+  plot.y = {.name = "remainder", .unit = g.quantity.unit, .logarithmic = true};
   for (std::size_t k = 0; k < g.by.size(); ++k) {
     const Derivative& d = g.by[k];
     if (!d.check) continue;
@@ -106,8 +106,8 @@ Plot taylor(const Gradient& g) {
 /// How far finite differences of any step are from the derivative.
 Plot plateau(const Gradient& g) {
   Plot plot;
-  plot.id = id_for("differences-" + std::string(g.quantity->name));
-  plot.title = fmt::format("Central differences of {}", g.quantity->name);
+  plot.id = id_for("differences-" + std::string(g.quantity.name));
+  plot.title = fmt::format("Central differences of {}", g.quantity.name);
   plot.caption = "Of perturbed runs with the same steps, less the derivative, over the derivative.";
   plot.x = {.name = "step of the key", .unit = "% of its value", .logarithmic = true};
   plot.y = {.name = "relative difference", .logarithmic = true};
@@ -131,8 +131,8 @@ Plot plateau(const Gradient& g) {
 
 Table derivatives(const Gradient& g) {
   Table table;
-  table.id = id_for("derivatives-" + std::string(g.quantity->name));
-  table.title = fmt::format("Derivatives of {}", g.quantity->name);
+  table.id = id_for("derivatives-" + std::string(g.quantity.name));
+  table.title = fmt::format("Derivatives of {}", g.quantity.name);
   table.columns = {
       {.name = "Key", .text = true},
       {.name = "Value", .format = {report::Format::Kind::significant, 4}},
@@ -165,14 +165,13 @@ Table derivatives(const Gradient& g) {
 
 std::string answer(const Gradient& g) {
   const Derivative& first = g.by[by_weight(g).front()];
-  std::string text =
-      fmt::format("{} is {:.5g} {}. It hangs most on {}: 1 % more of it gives {:+.3g} %.", g.quantity->name,
-                  g.value, g.quantity->unit, first.key.path, first.elasticity);
+  std::string text = fmt::format("{} is {:.5g} {}. It hangs most on {}: 1 % more of it gives {:+.3g} %.",
+                                 g.quantity.name, g.value, g.quantity.unit, first.key.path, first.elasticity);
   if (g.column)
-    text += fmt::format(" Its column {} reads {:.5g} {}.", g.quantity->column, *g.column, g.quantity->unit);
+    text += fmt::format(" Its column {} reads {:.5g} {}.", g.quantity.column, *g.column, g.quantity.unit);
   if (g.has_sigma())
     text += fmt::format(" The keys' uncertainties make ± {:.3g} {} of it.", g.input_uncertainty(),
-                        g.quantity->unit);
+                        g.quantity.unit);
   return text;
 }
 
@@ -187,9 +186,8 @@ std::string page_of(const Result& result) {
   for (const Gradient& g : result.gradients) {
     if (!g.doubt.empty())
       page.words.emplace_back(
-          Text{fmt::format("The gradient of {} {}.", g.quantity->name, g.doubt), Text::Style::warning});
-    page.words.emplace_back(
-        report::Answer{fmt::format("What does {} hang on?", g.quantity->name), answer(g)});
+          Text{fmt::format("The gradient of {} {}.", g.quantity.name, g.doubt), Text::Style::warning});
+    page.words.emplace_back(report::Answer{fmt::format("What does {} hang on?", g.quantity.name), answer(g)});
   }
   const Cost& c = result.cost;
   page.words.emplace_back(report::Answer{
@@ -200,12 +198,12 @@ std::string page_of(const Result& result) {
   for (std::size_t q = 0; q < result.gradients.size(); ++q) {
     const Gradient& g = result.gradients[q];
     Chapter chapter;
-    chapter.id = id_for(g.quantity->name);
-    chapter.heading = g.quantity->name;
-    chapter.blocks.emplace_back(Text{fmt::format("It is {}.", g.quantity->meaning)});
+    chapter.id = id_for(g.quantity.name);
+    chapter.heading = g.quantity.name;
+    chapter.blocks.emplace_back(Text{fmt::format("It is {}.", g.quantity.meaning)});
     if (q > 0) chapter.blocks.emplace_back(tornado(g));
     chapter.blocks.emplace_back(derivatives(g));
-    if (result.over_time.size() > 1) chapter.blocks.emplace_back(over_time(result, q));
+    if (result.over_time.size() > 1 && !g.reaches) chapter.blocks.emplace_back(over_time(result, q));
     const bool checked = std::any_of(g.by.begin(), g.by.end(), [](const Derivative& d) { return !!d.check; });
     if (checked) {
       chapter.blocks.emplace_back(taylor(g));
