@@ -1,6 +1,7 @@
 #include "studies/job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <signal.h>
 
 #include <chrono>
@@ -58,17 +59,32 @@ Outcome ending_in(const fs::path& directory, const std::string& solver, const Js
 struct Job {
   std::string id, solver;
   Json settings;
-  double longest_run = 0.0;  ///< s
+  double longest_run = 0.0;      ///< s
+  std::string of = {}, by = {};  ///< parted by commas: derivatives that are wanted of it; else empty
+
+  bool is_gradient() const { return !of.empty(); }
 };
+
+std::string parted_by_commas(const Json& list) {
+  std::vector<std::string> texts;
+  for (const Json& item : list) texts.push_back(item.get<std::string>());
+  return fmt::format("{}", fmt::join(texts, ","));
+}
 
 Job read_job(const Folder& folder, const std::string& id) {
   const Json jobs = read_json(folder.jobs_file());
   if (!jobs.is_object() || !jobs.contains("jobs"))
     throw runs::RunError(folder.jobs_file().string() + ": is not the list of jobs of a study");
   for (const Json& job : jobs["jobs"])
-    if (job.value("id", "") == id)
-      return {id, job.value("solver", "mpm"), job.value("settings", Json()),
-              jobs.value("longest_run_s", 3600.0)};
+    if (job.value("id", "") == id) {
+      const Json wanted = job.value("derivatives", Json::object());
+      return {id,
+              job.value("solver", "mpm"),
+              job.value("settings", Json()),
+              jobs.value("longest_run_s", 3600.0),
+              parted_by_commas(wanted.value("of", Json::array())),
+              parted_by_commas(wanted.value("by", Json::array()))};
+    }
   throw runs::RunError(fmt::format("{}: has no job {}", folder.jobs_file().string(), id));
 }
 
@@ -93,6 +109,9 @@ bool has_begun(const Folder& folder, const Job& job) {
 /// From the last checkpoint where this run left one, else from the start.
 std::vector<std::string> arguments_of(const Folder& folder, const Job& job, bool begun) {
   const fs::path run = folder.run(job.id);
+  if (job.is_gradient())
+    return {"gradient", folder.scene(job.id).string(), "--of", job.of, "--by", job.by, "-o", run.string(),
+            "--force"};
   std::vector<std::string> arguments = {job.solver};
   if (begun)
     arguments.insert(arguments.end(), {"--resume", run.string()});
@@ -189,8 +208,9 @@ int run_job(const fs::path& root, const std::string& id) {
   const Folder folder{root};
   const Job job = read_job(folder, id);
   const auto begin = Clock::now();
+  const bool whole = !job.is_gradient() || fs::exists(folder.run(id) / "gradient.json");
   if (const Outcome there = ending_in(folder.run(id), job.solver, job.settings);
-      there.ending == Ending::finished) {
+      whole && there.ending == Ending::finished) {
     mark(folder, job, there, 0.0);  // it ended, but whoever waited for it was killed before it could say so
     return 0;
   }
@@ -198,7 +218,7 @@ int run_job(const fs::path& root, const std::string& id) {
   fs::create_directories(folder.run(id).parent_path());
   clear_unusable(folder, job);
   const runs::InterruptGuard guard;
-  const bool begun = has_begun(folder, job);
+  const bool begun = !job.is_gradient() && has_begun(folder, job);
   Outcome outcome = attempt(folder, job, begun, begin);
   if (begun && (outcome.ending == Ending::crashed || outcome.ending == Ending::refused)) {
     // What it left could not be gone on with, which says nothing of the run.

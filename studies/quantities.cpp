@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "compare/measures/gauges.h"
 #include "compare/measures/series.h"
@@ -77,6 +79,27 @@ std::optional<double> of_history(const runs::Run& run, const Name& name) {
   return std::isfinite(result) ? std::optional(result) : std::nullopt;
 }
 
+/// What `flowrest gradient` has left beside the run; nothing where it has not.
+std::optional<double> of_gradient(const runs::Run& run, const DerivativeName& name) {
+  std::ifstream file(run.directory / "gradient.json");
+  if (!file) return std::nullopt;
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  const auto all = json.is_array() ? json : nlohmann::json::array({json});
+  for (const auto& quantity : all) {
+    if (quantity.value("quantity", "") != name.of && quantity.value("asked_for", "") != name.of) continue;
+    for (const auto& derivative : quantity.value("derivatives", nlohmann::json::array())) {
+      if (derivative.value("key", "") != name.by) continue;
+      // One that failed its check says nothing.
+      if (quantity.value("check", nlohmann::json::object()).value("word", "") != "agrees")
+        return std::nullopt;
+      const auto& value = derivative[name.elasticity ? "elasticity" : "value"];
+      if (value.is_number()) return value.get<double>();
+    }
+  }
+  return std::nullopt;
+}
+
 /// The profile in force at a time: the last one not after it, or the run's last.
 const runs::Profile* profile_at(const runs::Run& run, const std::optional<double>& time) {
   const runs::Profile* found = nullptr;
@@ -131,7 +154,27 @@ std::optional<double> of_profile(const runs::Run& run, const Name& name, const r
 
 }  // namespace
 
+std::optional<DerivativeName> derivative_named(const std::string& quantity) {
+  for (const bool elasticity : {false, true}) {
+    const std::string begin = elasticity ? "elasticity(" : "derivative(";
+    if (!quantity.starts_with(begin) || !quantity.ends_with(")")) continue;
+    const std::string inside = quantity.substr(begin.size(), quantity.size() - begin.size() - 1);
+    const auto comma = inside.find(',');
+    if (comma == std::string::npos) return std::nullopt;
+    const auto key = inside.find_first_not_of(' ', comma + 1);
+    if (comma == 0 || key == std::string::npos) return std::nullopt;
+    return DerivativeName{elasticity, inside.substr(0, comma), inside.substr(key)};
+  }
+  return std::nullopt;
+}
+
 std::string complaint_about(const std::string& quantity) {
+  if (derivative_named(quantity)) return {};
+  if (quantity.starts_with("derivative(") || quantity.starts_with("elasticity("))
+    return fmt::format(
+        "{}, which names no quantity and key; allowed: such as elasticity(spread_mm, "
+        "material.yield_stress)",
+        scenes::quoted(quantity));
   const Name name = parsed(quantity);
   const auto known = every_name();
   if (std::find(known.begin(), known.end(), name.base) == known.end()) {
@@ -154,6 +197,8 @@ std::vector<std::string> quantity_examples() {
 bool is_difference(const std::string& quantity) { return parsed(quantity).base.starts_with("profile_"); }
 
 std::string unit_of(const std::string& quantity) {
+  if (const auto derivative = derivative_named(quantity))
+    return derivative->elasticity ? "% per %" : unit_of(derivative->of) + " per unit of the key";
   const std::string base = parsed(quantity).base;
   const std::vector<std::pair<std::string, std::string>> endings = {
       {"_mm", "mm"}, {"_m_s", "m/s"}, {"_1_s", "1/s"}, {"_m3", "m3"}, {"_J", "J"}, {"_s", "s"}};
@@ -163,6 +208,7 @@ std::string unit_of(const std::string& quantity) {
 }
 
 std::optional<double> measure(const runs::Run& run, const std::string& quantity, const runs::Run* reference) {
+  if (const auto derivative = derivative_named(quantity)) return of_gradient(run, *derivative);
   const Name name = parsed(quantity);
   if (is_moment(name.base)) return compare::read(run, name.base == "rest_time_s" ? "rest_s" : name.base);
   if (is_difference(quantity)) return reference ? of_profile(run, name, *reference) : std::nullopt;

@@ -9,7 +9,17 @@
 /// What a study measures of a run, by name: a column of its history at the end ("spread_mm") or at a time
 /// ("spread_mm@1.5"), a moment ("rest_time_s", "arrival_s", "light_s"), or how its profile differs from the
 /// reference's ("profile_l1", "profile_l2", with or without a time).
+/// Or how one of these changes with a key: "derivative(spread_mm, material.yield_stress)" in the quantity's unit per the
+/// key's, "elasticity(...)" in % per %. Runs of material points are then made by `flowrest gradient`.
 namespace flowrest::studies {
+
+/// A derivative by its name.
+struct DerivativeName {
+  bool elasticity = false;
+  std::string of, by;
+};
+/// The derivative that a quantity is; nothing where it is none.
+std::optional<DerivativeName> derivative_named(const std::string& quantity);
 
 /// What is wrong with the name of a quantity; empty where nothing is.
 std::string complaint_about(const std::string& quantity);

@@ -183,6 +183,10 @@ TEST(Quantities, KnowTheirUnitsAndTheirTimes) {
   EXPECT_EQ(complaint_about("spread_mm@0.5"), "");
   EXPECT_THAT(complaint_about("spread_mm@soon"), HasSubstr("no number of seconds"));
   EXPECT_THAT(complaint_about("rest_time_s@3"), HasSubstr("rest_time_s alone"));
+  EXPECT_EQ(complaint_about("derivative(spread_mm, material.yield_stress)"), "");
+  EXPECT_EQ(derivative_named("elasticity(spread_mm,material.yield_stress)")->by, "material.yield_stress");
+  EXPECT_EQ(unit_of("elasticity(spread_mm, material.yield_stress)"), "% per %");
+  EXPECT_THAT(complaint_about("derivative(spread_mm)"), HasSubstr("names no quantity and key"));
 }
 
 TEST(Study, AByteOrderMarkAndCarriageReturnsChangeNothingAndUtf16IsNamed) {

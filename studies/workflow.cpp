@@ -20,6 +20,7 @@
 #include "runs/run_directory.h"
 #include "runs/temporary_folder.h"
 #include "scenes/installation.h"
+#include "studies/quantities.h"
 
 namespace flowrest::studies {
 
@@ -41,14 +42,25 @@ Json job_of(const Study& study, const Point& point) {
   constexpr double mebibyte = 1048576.0, minute = 60.0;
   const scenes::Cost cost = expected_cost(point);
   const int threads = point.solver == Solver::mpm ? std::max(1, point.scene->mpm.threads) : 1;
-  return {{"id", point.id},
-          {"label", point.label},
-          {"solver", to_string(point.solver)},
-          {"threads", threads},
-          {"memory_mb", static_cast<std::int64_t>(std::ceil(200.0 + 1.5 * cost.memory / mebibyte))},
-          {"minutes", static_cast<std::int64_t>(std::ceil(study.longest_run / minute)) + 1},
-          {"expected_cpu_s", cost.cpu_seconds},
-          {"settings", Json::parse(scenes::resolved_json(*point.scene))}};
+  Json of = Json::array(), by = Json::array();
+  const auto note = [](Json& list, const std::string& name) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  };
+  for (const std::string& quantity : study.quantities)
+    if (const auto derivative = derivative_named(quantity); derivative && point.solver == Solver::mpm) {
+      note(of, derivative->of);
+      note(by, derivative->by);
+    }
+  Json job = {{"id", point.id},
+              {"label", point.label},
+              {"solver", to_string(point.solver)},
+              {"threads", threads},
+              {"memory_mb", static_cast<std::int64_t>(std::ceil(200.0 + 1.5 * cost.memory / mebibyte))},
+              {"minutes", static_cast<std::int64_t>(std::ceil(study.longest_run / minute)) + 1},
+              {"expected_cpu_s", cost.cpu_seconds},
+              {"settings", Json::parse(scenes::resolved_json(*point.scene))}};
+  if (!of.empty()) job["derivatives"] = {{"of", of}, {"by", by}};
+  return job;
 }
 
 /// The long runs first, so that no core waits for one at the end.
