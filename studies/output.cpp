@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compare/words.h"
+#include "runs/csv.h"
 #include "runs/run_directory.h"
 #include "studies/page.h"
 #include "studies/quantities.h"
@@ -163,7 +164,8 @@ std::string to_csv(const Results& results) {
   for (const std::string& key : keys) text += fmt::format(",{}", key);
   text += ",verdict,reason,cpu_s,wall_s,peak_memory_bytes";
   for (const std::string& q : results.study.quantities)
-    text += fmt::format(",{0},{0}_relative_error,{0}_relative_uncertainty,{0}_pareto", q);
+    for (const char* more : {"", "_relative_error", "_relative_uncertainty", "_pareto"})
+      text += fmt::format(",{}", runs::csv_field(q + more));
   text += "\n";
   for (const Result& r : results.results) text += row(results, r, keys);
   return text;

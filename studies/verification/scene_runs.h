@@ -14,6 +14,11 @@ namespace flowrest::studies::verification {
 runs::Run run_scene(const std::string& scene, const std::vector<std::string>& set, const std::string& solver,
                     const Workplace&);
 
+/// Differentiates a scene's run in the same way, with its checks: gradient.json of one quantity.
+nlohmann::json run_gradient(const std::string& scene, const std::vector<std::string>& set,
+                            const std::string& of, const std::string& by, const std::string& mode,
+                            const Workplace&);
+
 /// "key=value" with every digit of the value.
 std::string setting(const std::string& key, double value);
 

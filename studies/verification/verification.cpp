@@ -75,7 +75,7 @@ std::string bound_words(const Case& c) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (auto* group : {duct_cases, slump_cases, body_cases})
+  for (auto* group : {duct_cases, slump_cases, body_cases, derivative_cases})
     for (Case& c : group()) cases.push_back(std::move(c));
   return cases;
 }

@@ -69,6 +69,7 @@ std::vector<Case> all_cases();
 std::vector<Case> duct_cases();   ///< scenes, by MPM and OpenFOAM
 std::vector<Case> slump_cases();  ///< scenes against asymptotes
 std::vector<Case> body_cases();   ///< bodies made by hand
+std::vector<Case> derivative_cases();
 
 /// Fills orders, convergence and the verdict from what was measured.
 void judge(Finding&);
