@@ -9,6 +9,7 @@
 
 #include "compare/comparison.h"
 #include "compare/exact/exact_run.h"
+#include "compare/fields/surface.h"
 #include "elements/commands.h"
 #include "runs/run_directory.h"
 #include "scenes/plausibility.h"
@@ -81,13 +82,21 @@ void try_figures(const Comparison& comparison, const std::string& report) {
   }
 }
 
+/// Says where they are, or that there are none.
+void write_all_surfaces(const Comparison& comparison, const std::filesystem::path& folder) {
+  const auto files = fields::write_surfaces(comparison, folder);
+  for (const auto& file : files) fmt::print("Surface: {}\n", file.string());
+  if (files.empty())
+    scenes::print_notes({"no surface: none of these runs has snapshots of particles in space"});
+}
+
 void add_compare(CLI::App& app) {
   struct Arguments {
     std::vector<std::string> runs;
     std::string output = "report";
     std::optional<double> spread_rate_mm;
     Options options;
-    bool no_figures = false, json = false;
+    bool no_figures = false, surface = false, json = false;
     std::string clip;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -111,6 +120,10 @@ void add_compare(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--no-figures", arguments->no_figures,
                     "Leave out the figures for papers (figures/*.svg and *.png)");
+  command->add_flag(
+      "--surface", arguments->surface,
+      "Also write the body of each run of material points in space, at its last snapshot, as STL into "
+      "the report's folder surfaces/");
   command
       ->add_option(
           "--clip", arguments->clip,
@@ -130,6 +143,8 @@ void add_compare(CLI::App& app) {
     if (!arguments->no_figures) try_figures(comparison, arguments->output);
     if (!arguments->clip.empty())
       write_clip(comparison, std::filesystem::path(arguments->output) / arguments->clip);
+    if (arguments->surface)
+      write_all_surfaces(comparison, std::filesystem::path(arguments->output) / "surfaces");
     scenes::print_notes(comparison.notes);
     for (const Finding& finding : comparison.findings) fmt::print("{}\n", finding.text);
     const std::string page =

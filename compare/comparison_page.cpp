@@ -8,6 +8,7 @@
 
 #include "compare/apparatus/apparatus.h"
 #include "compare/fields/section.h"
+#include "compare/input_part.h"
 #include "compare/measures/gauges.h"
 #include "compare/measures/stop_rules.h"
 #include "compare/run_table.h"
@@ -636,11 +637,13 @@ report::Page page_of(const Comparison& comparison, const Json& json) {
   for (auto& section : fields::sections_of(comparison)) shapes.blocks.push_back(std::move(section));
   if (!shapes.blocks.empty()) add(std::move(shapes));
   if (Chapter further = further_chapter(comparison); !further.blocks.empty()) add(std::move(further));
+  for (Chapter& own : comparison.apparatus->chapters(comparison)) add(std::move(own));
   add(square_chapter(comparison));
   add(shear_chapter(comparison));
   add(residual_chapter(comparison));
   add(stops_chapter(comparison));
   add(trust_chapter(comparison));
+  add(input_chapter(comparison));
   add(Chapter{"all-measures", "Measures", {measures_table(comparison)}});
   add(pairs_chapter(comparison));
   add(cost_chapter(comparison));

@@ -10,6 +10,7 @@
 #include "compare/comparison_page.h"
 #include "compare/exact/exact_run.h"
 #include "compare/fields/states.h"
+#include "compare/input_part.h"
 #include "compare/measures/stop_rules.h"
 #include "compare/synthetic_runs.h"
 #include "compare/words.h"
@@ -111,6 +112,31 @@ TEST_F(ComparisonTest, MeasuresWhatTheFormulaSays) {
   const auto at = [&](double depth) { return *evp.gauge_end * (1.0 - std::pow(depth / 0.0396, 2)); };
   EXPECT_NEAR(*evp.spread_at_half, at(0.0015), 2e-4);
   EXPECT_NEAR(*evp.spread_at_twice, at(0.006), 2e-4);
+}
+
+/// gradient.json beside a run gives its inputs' part; one whose check failed, or that is no such file, gives nothing.
+TEST_F(ComparisonTest, TakesUpWhatInputsMakeOfAResult) {
+  write_arrested();
+  EXPECT_FALSE(input_chapter(compared()));
+  const auto leave = [&](const std::string& word) {
+    std::ofstream(folder / "evp" / "gradient.json")
+        << R"({"quantity": "smooth_spread_mm", "unit": "mm", "value": 550.0, "check": {"word": ")" << word
+        << R"("}, "input_uncertainty": {"standard": 6.5, "of": [{"key": "a", "share": 0.2}, {"key": "b", "share": 0.8}]}})";
+  };
+  leave("agrees");
+  const Comparison comparison = compared();
+  const auto parts = input_parts(comparison.runs.front().run);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].standard, 6.5);
+  EXPECT_EQ(parts[0].shares[0].key, "b");
+  const auto chapter = input_chapter(comparison);
+  ASSERT_TRUE(chapter);
+  const auto& table = std::get<report::Table>(chapter->blocks.front());
+  EXPECT_EQ(std::get<std::string>(table.rows.front().cells.back()), "80 % b, 20 % a");
+  leave("fails its check");
+  EXPECT_FALSE(input_chapter(compared()));
+  std::ofstream(folder / "evp" / "gradient.json") << "[1, {}]";
+  EXPECT_FALSE(input_chapter(compared()));
 }
 
 TEST_F(ComparisonTest, RulesToStopByCutWhereTheFormulaSaysAndReadTheGaugeThen) {

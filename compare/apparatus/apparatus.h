@@ -10,6 +10,7 @@
 #include "compare/exact/creep.h"
 #include "compare/exact/exact_run.h"
 #include "compare/measures/gauges.h"
+#include "compare/report/page.h"
 #include "compare/run_table.h"
 #include "scenes/scene.h"
 
@@ -65,6 +66,8 @@ class ApparatusReport {
   virtual std::string readings_sentence(const Comparison&, const RunView&) const { return ""; }
   /// Tells what was found, and which comparison is fair.
   virtual void describe(Comparison&) const;
+  /// Chapters of its own, after those on the gauge.
+  virtual std::vector<report::Chapter> chapters(const Comparison&) const { return {}; }
   virtual std::string stop_question() const { return "When does each stop, and where?"; }
 
   virtual std::string measures_caption(const Comparison&) const;

@@ -1,10 +1,12 @@
 // Printed strands: what comes out of the nozzle is there, and where it should be.
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/test_runs.h"
+#include "runs/csv.h"
 
 using namespace flowrest;
 using namespace flowrest::mpm;
@@ -56,6 +58,7 @@ TEST_F(Print, GoesOnBitForBitAndWithAnyNumberOfThreads) {
   EXPECT_EQ(run(scene, stopped).status, runs::Status::interrupted);
   EXPECT_EQ(resume(options("stopped"), {"mpm.threads=2"}).status, runs::Status::end_time);
   EXPECT_EQ(text_of(folder / "whole/history.csv"), text_of(folder / "stopped/history.csv"));
+  EXPECT_EQ(text_of(folder / "whole/sections.csv"), text_of(folder / "stopped/sections.csv"));
   const auto a = read_checkpoint(folder / "whole"), b = read_checkpoint(folder / "stopped");
   ASSERT_TRUE(a && b);
   ASSERT_EQ(a->solver.cells, b->solver.cells);
@@ -73,6 +76,26 @@ TEST_F(Print, AStrandHasTheSectionThatIsFed) {
   EXPECT_LT(run.history.at("base_width_mm").back(), run.history.at("strand_width_mm").back() + 0.1);
   EXPECT_TRUE(std::isnan(run.history.at("strand_width_mm").front()));
   EXPECT_EQ(run.history.at("nozzle_push_N").back(), 0.0) << "it has gone";
+  // sections.csv: stretches of one section's length from where the nozzle began, whose rows sum to what is fed, and are
+  // as wide as the gauge says.
+  const runs::Table sections = runs::read_csv(folder / "run/sections.csv");
+  std::map<double, double> area, widest;  // by place, at the last time
+  for (std::size_t i = 0; i < sections.rows(); ++i) {
+    if (sections.at("time_s")[i] != sections.at("time_s").back()) continue;
+    const double x = sections.at("x_m")[i], half = sections.at("half_width_m")[i];
+    area[x] += 2.0 * half * run.info["cell_m"].get<double>();
+    widest[x] = std::max(widest[x], 2.0 * half);
+    EXPECT_EQ(sections.at("layer")[i], sections.at("z_m")[i] < 0.0125 ? 1.0 : sections.at("layer")[i]);
+  }
+  ASSERT_GE(area.size(), 4U);
+  EXPECT_NEAR(area.rbegin()->first - area.begin()->first, 0.025 * static_cast<double>(area.size() - 1),
+              1e-12);
+  const double fed = bore_area * extrusion / printing;
+  for (const auto& [x, own] : area)
+    if (x > area.begin()->first && x < area.rbegin()->first) {
+      EXPECT_NEAR(own, fed, 0.1 * fed) << x;
+    }
+  EXPECT_NEAR(1e3 * std::prev(widest.end(), 2)->second, run.history.at("strand_width_mm").back(), 2.0);
 }
 
 /// Along both legs of the corner lies what was fed for them, and all of it is there.

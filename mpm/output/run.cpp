@@ -15,6 +15,7 @@
 #include "mpm/output/checkpoint.h"
 #include "mpm/output/hand_over.h"
 #include "mpm/output/noise.h"
+#include "mpm/output/sections.h"
 #include "mpm/output/snapshot.h"
 #include "mpm/plain/solver.h"
 #include "mpm/sampling/feed.h"
@@ -83,6 +84,8 @@ class MpmRun {
                 : feeds_.any() ? make(feeds_.due(0.0, first_feed_step))
                                : make(seeds_of(scene))),
         writer_(open()),
+        sections_(options.directory, pieces_, settings_.cell,
+                  checkpoint ? checkpoint->run.last_profile : -1.0),
         snapshots_(options.directory / "particles", scene, checkpoint ? checkpoint->run.last_snapshot : -1.0),
         progress_(fmt::format("mpm {} {}", scene.name, scenes::to_string(scene.material.model)),
                   scene.time.end, options.quiet) {
@@ -291,6 +294,7 @@ class MpmRun {
     while (due(state_.histories, scene_.output.history_interval)) state_.histories += 1.0;
     if (due(state_.profiles, scene_.output.profile_interval)) {
       writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);
+      sections_.write(state_.time, *solver_);
       state_.last_profile = state_.time;
       while (due(state_.profiles, scene_.output.profile_interval)) state_.profiles += 1.0;
     }
@@ -440,6 +444,7 @@ class MpmRun {
       if (is_shared_with_longer_runs()) checkpoint();
     } else if (state_.last_profile != state_.time) {
       writer_.profile(state_.time, measures_.body.coordinate, measures_.body.value);
+      sections_.write(state_.time, *solver_);
     }
     if (status == runs::Status::at_rest && state_.last_snapshot != state_.time)
       snapshots_.write(state_.time, *solver_);
@@ -491,6 +496,7 @@ class MpmRun {
   double cpu_begin_ = runs::cpu_seconds(), wall_begin_ = runs::wall_seconds();
   std::unique_ptr<Solver> solver_;
   runs::RunWriter writer_;
+  SectionWriter sections_;
   SnapshotWriter snapshots_;
   runs::Progress progress_;
   RunState state_;
