@@ -38,27 +38,24 @@ std::optional<Section> last_section(const runs::Run& run) {
   return section;
 }
 
-/// Outlines side by side: up on the left, down on the right.
+/// Half widths over the height, all runs in one figure.
 std::optional<report::Plot> outlines(const Comparison& comparison) {
   report::Plot plot;
-  plot.id = "sections";
-  plot.title = "Sections at the end";
-  plot.caption = "Outline of the stretch that was laid last, by what rows hold that are a cell high.";
-  plot.x = {.name = "across the strand", .unit = "mm"};
-  plot.y = {.name = "height", .unit = "mm", .from = 0.0};
-  plot.tall = true;
+  plot.id = "strand-sections";
+  plot.title = "sections at the end";
+  plot.caption =
+      "Half the width over the height, of the stretch that was laid last, by what rows hold that are a cell high.";
+  plot.x = {.name = "height", .unit = "mm", .from = 0.0};
+  plot.y = {.name = "half the width", .unit = "mm", .from = 0.0};
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     const auto section = last_section(comparison.runs[i].run);
     if (!section) continue;
     report::Curve curve;
     curve.entry = static_cast<int>(i);
+    curve.marks = true;
     for (const auto& [z, half] : section->half_width) {
-      curve.x.push_back(-1e3 * half);
-      curve.y.push_back(1e3 * z);
-    }
-    for (auto row = section->half_width.rbegin(); row != section->half_width.rend(); ++row) {
-      curve.x.push_back(1e3 * row->second);
-      curve.y.push_back(1e3 * row->first);
+      curve.x.push_back(1e3 * z);
+      curve.y.push_back(1e3 * half);
     }
     plot.curves.push_back(std::move(curve));
   }
@@ -90,8 +87,8 @@ std::optional<report::Table> beside_measured(const Comparison& comparison) {
   const auto claims = claims_of(word(comparison.runs.front().run.info, "/scene_name"));
   if (claims.empty()) return std::nullopt;
   report::Table table;
-  table.id = "measured";
-  table.title = "Beside what was measured";
+  table.id = "strand-measured";
+  table.title = "beside what was measured";
   table.caption =
       "The measurements of Comminal et al. 2020 are in no source at hand: their column stays empty until scenes/printed.csv "
       "has them. The last column is what Zhang et al. 2026 (Table 5) say of their own simulation, and holds nothing against ours.";
