@@ -36,9 +36,8 @@ struct Nozzle {
 /// middle of cells; else it lies on the next row above.
 ///
 /// What holds changes over one cell with a continuous slope: from column to tube about the column's edge, and from
-/// tube to nothing about the tube's.
-/// A node that was held or not, by a hair, would make the flow jump as the tube moves past it, and nothing
-/// printed would have a derivative by the printing velocity.
+/// tube to nothing about the tube's. A node that was held or not, by a hair, would make the flow jump as the tube
+/// moves past it, and nothing printed would have a derivative by the printing velocity.
 ///
 /// `T`: the scalar, which may carry derivatives.
 template <class T>

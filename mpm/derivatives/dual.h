@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 /// These are the innermost operations of all: a call costs more than they do.
@@ -23,6 +24,13 @@ struct Dual {
 
   constexpr Dual() = default;
   constexpr Dual(double value_) : v(value_) {}  // NOLINT: a number is one without derivatives
+
+  /// A number that derivatives are by: the input numbered `which`.
+  static Dual input(double value, std::size_t which) {
+    Dual x(value);
+    x.d[which] = 1.0;
+    return x;
+  }
 
   FLOWREST_DUAL friend Dual operator+(const Dual& a, const Dual& b) {
     Dual x(a.v + b.v);

@@ -13,30 +13,26 @@ const std::vector<Quantity>& quantities() {
   using namespace runs::column;
   static const std::vector<Quantity> all = {
       {Reading::spread, "smooth_spread_mm", spread_of_mass.name, "mm", 1e3,
-       "twice the radius that holds 99.5 % of the mass, particles fading over half a cell", false},
-      {Reading::rms_radius, "rms_radius_mm", "", "mm", 1e3, "root of the mean square distance from the axis",
-       true},
+       "twice the radius that holds 99.5 % of the mass, particles fading over half a cell"},
+      {Reading::rms_radius, "rms_radius_mm", "", "mm", 1e3, "root of the mean square distance from the axis"},
       {Reading::centre_height, "smooth_height_mm", height.name, "mm", 1e3,
-       "depth over a patch of three cells about the axis", false},
+       "depth over a patch of three cells about the axis"},
       {Reading::front, "smooth_front_mm", front_of_mass.name, "mm", 1e3,
-       "the place that 99.5 % of the mass has not passed, particles fading over half a cell", false},
+       "the place that 99.5 % of the mass has not passed, particles fading over half a cell"},
       {Reading::plug_velocity, "smooth_plug_velocity_m_s", plug_velocity.name, "m/s", 1.0,
-       "velocity over a cell in the middle between the plates", false},
-      {Reading::mean_velocity, mean_velocity.name, mean_velocity.name, "m/s", 1.0, mean_velocity.meaning,
-       true},
+       "velocity over a cell in the middle between the plates"},
+      {Reading::mean_velocity, mean_velocity.name, mean_velocity.name, "m/s", 1.0, mean_velocity.meaning},
       {Reading::discharged, "smooth_discharged_fraction", discharged.name, "", 1.0,
-       "share of the mass below the outlet, particles fading over a cell", false},
+       "share of the mass below the outlet, particles fading over a cell"},
       {Reading::strand_width, "smooth_strand_width_mm", strand_width.name, "mm", 1e3,
-       "width of the strand's section behind the nozzle, the largest over a height that fades over a cell",
-       false},
+       "width of the strand's section behind the nozzle, the largest over a height that fades over a cell"},
       {Reading::strand_height, "smooth_strand_height_mm", strand_height.name, "mm", 1e3,
-       "height of that section, the largest over a breadth that fades over a cell", false},
+       "height of that section, the largest over a breadth that fades over a cell"},
       {Reading::section_area, "smooth_section_area_mm2", section_area.name, "mm2", 1e6,
-       "its area, which fades over a cell at both ends", false},
-      {Reading::mean_height, "mean_height_mm", "", "mm", 1e3, "height of the centre of mass", true},
-      {Reading::flocculation, flocculation.name, flocculation.name, "", 1.0, flocculation.meaning, true},
-      {Reading::kinetic_energy, kinetic_energy.name, kinetic_energy.name, "J", 1.0, kinetic_energy.meaning,
-       true}};
+       "its area, which fades over a cell at both ends"},
+      {Reading::mean_height, "mean_height_mm", "", "mm", 1e3, "height of the centre of mass"},
+      {Reading::flocculation, flocculation.name, flocculation.name, "", 1.0, flocculation.meaning},
+      {Reading::kinetic_energy, kinetic_energy.name, kinetic_energy.name, "J", 1.0, kinetic_energy.meaning}};
   return all;
 }
 

@@ -42,7 +42,6 @@ struct Quantity {
   const char* unit;
   double per_si;  ///< the unit's number for one in SI units
   const char* meaning;
-  bool same;  ///< the column itself is smooth, and this is it
   /// m along the path from where the nozzle begins: of a section that is read there and not behind the nozzle.
   std::optional<double> place = {};
 };

@@ -24,10 +24,6 @@ class PlainSource {
   PlainSource(const Variation& of, const Variation& recorded) : of_(of), recorded_(recorded) {}
 
   const Variation& recorded() const { return recorded_; }
-  template <class Number>
-  double number(const Number& of) const {
-    return of(of_);
-  }
   template <class Numbers>
   std::vector<double> numbers(const Numbers& of) const {
     return of(of_);
@@ -45,12 +41,6 @@ class DualSource {
   DualSource(const Variations& of, std::size_t first) : of_(of), first_(first) {}
 
   const Variation& recorded() const { return of_.centre(); }
-  template <class Number>
-  Dual<N> number(const Number& of) const {
-    Dual<N> x(of(of_.centre()));
-    for (std::size_t k = 0; k < count(); ++k) x.d[k] = of_.slope(first_ + k, of);
-    return x;
-  }
   template <class Numbers>
   std::vector<Dual<N>> numbers(const Numbers& of) const {
     const std::vector<double> values = of(of_.centre());
@@ -105,12 +95,8 @@ template <class Source>
 plain::Inputs<typename Source::Scalar> inputs_of(const Source& source) {
   using T = typename Source::Scalar;
   auto inputs = plain::inputs_of<T>(source.recorded().settings);
-  const std::vector<T> numbers = source.numbers([](const Variation& v) {
-    std::vector<double> all;
-    const auto own = plain::inputs_of<double>(v.settings);
-    plain::visit_numbers(own, [&](double number) { all.push_back(number); });
-    return all;
-  });
+  const std::vector<T> numbers = source.numbers(
+      [](const Variation& v) { return plain::numbers_of(plain::inputs_of<double>(v.settings)); });
   std::size_t next = 0;
   plain::visit_numbers(inputs, [&](T& number) { number = numbers[next++]; });
   return inputs;
@@ -124,20 +110,9 @@ std::vector<NozzleMotion<typename Source::Scalar>> nozzles_of(const Source& sour
   const SolverSettings& s = source.recorded().settings;
   for (std::size_t n = 0; n < s.nozzles.size(); ++n) {
     if (!s.nozzles[n].is_there(step.time)) continue;
-    const std::vector<T> x = source.numbers([&](const Variation& v) -> std::vector<double> {
-      const Nozzle& nozzle = v.settings.nozzles[n];
-      const double after = step.time + step.step;
-      const Vector mouth = nozzle.mouth(step.time), next = nozzle.mouth(after);
-      return {mouth[0],
-              mouth[1],
-              mouth[2],
-              next[0],
-              next[1],
-              next[2],
-              nozzle.extruded(after) - nozzle.extruded(step.time)};
-    });
-    there.emplace_back(s.nozzles[n].bore, s.nozzles[n].wall, s.cell, std::array<T, 3>{x[0], x[1], x[2]},
-                       std::array<T, 3>{x[3], x[4], x[5]}, x[6], step.step);
+    const std::vector<T> x =
+        source.numbers([&](const Variation& v) { return v.nozzle(n, step.time, step.step); });
+    there.push_back(motion_from(s.nozzles[n], s.cell, x, step.step));
   }
   return there;
 }
@@ -145,10 +120,7 @@ std::vector<NozzleMotion<typename Source::Scalar>> nozzles_of(const Source& sour
 /// Uniform acceleration of a step, m/s2.
 template <int Dim, class Source>
 plain::Vec<typename Source::Scalar, Dim> driving_of(const Source& source, const StepTaken& step) {
-  const auto a = source.numbers([&](const Variation& v) {
-    const auto own = acceleration_at(v.scene, step.time);
-    return std::vector<double>(own.begin(), own.end());
-  });
+  const auto a = source.numbers([&](const Variation& v) { return v.acceleration(step.time); });
   plain::Vec<typename Source::Scalar, Dim> driving;
   std::copy_n(a.begin(), Dim, driving.begin());
   return driving;
@@ -241,7 +213,7 @@ class Replay {
   const Body& body() const { return body_; }
   Body& body() { return body_; }
   std::size_t made() const { return made_; }
-  Arrivals& arrivals() { return arrivals_; }
+  const Arrivals& arrivals() const { return arrivals_; }
   const Source& source() const { return source_; }
 
  private:
@@ -270,14 +242,19 @@ plain::Particle<double, Dim> values_of(const plain::Particle<T, Dim>& p, bool th
   return values;
 }
 
+/// The numbers of Surroundings, of a reading at a time (s).
+inline std::vector<double> numbers_of_surroundings(const Variation& v, double time,
+                                                   const Quantity& quantity) {
+  const auto station = v.station(time, quantity.place);
+  return {v.settings.density, station[0], station[1]};
+}
+
 /// What a reading needs at a time (s) beside the particles.
 template <class Source>
 Surroundings<typename Source::Scalar> surroundings_of(const Source& source, double time,
                                                       const Quantity& quantity) {
-  const auto x = source.numbers([&](const Variation& v) -> std::vector<double> {
-    const auto station = v.station(time, quantity.place);
-    return {v.settings.density, station[0], station[1]};
-  });
+  const auto x =
+      source.numbers([&](const Variation& v) { return numbers_of_surroundings(v, time, quantity); });
   return {x[0], {x[1], x[2]}};
 }
 

@@ -29,9 +29,7 @@ class Backwards {
         inputs_(plain::inputs_of<double>(centre_.settings)),
         run_(Source(centre_, centre_), recording),
         adjoint_(centre_.settings, inputs_),
-        digests_(recording.rows.back().steps + 1, 0) {
-    plain::visit_numbers(inputs_, [&](double) { bars_of_inputs_.numbers.push_back(0.0); });
-  }
+        digests_(recording.rows.back().steps + 1, 0) {}
 
   Readings make(const std::vector<Quantity>& quantities, double memory, ReverseCost& cost,
                 const Watch& watch) {
@@ -41,7 +39,7 @@ class Backwards {
     keep();
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       key_.assign(variations_.keys(), 0.0);
-      std::fill(bars_of_inputs_.numbers.begin(), bars_of_inputs_.numbers.end(), 0.0);
+      bars_of_inputs_.numbers.assign(plain::numbers_of(inputs_).size(), 0.0);
       run_.restore(kept_.front());
       advance_to(steps);
       readings.value.push_back(begin(quantities[q], time));
@@ -121,12 +119,8 @@ class Backwards {
     std::array<double, 3> of_surroundings{};
     bars_.assign(particles.size(), Particle{});
     for (std::size_t q = 0; q < particles.size(); ++q) {
-      int next = 0;
-      const auto seeded = [&](double x) {
-        D dual(x);
-        dual.d[static_cast<std::size_t>(next++)] = 1.0;
-        return dual;
-      };
+      std::size_t next = 0;
+      const auto seeded = [&](double x) { return D::input(x, next++); };
       const Particle& p = particles[q];
       plain::Particle<D, Dim> local;
       local.cell = p.cell;
@@ -140,7 +134,7 @@ class Backwards {
       seen.station = {seeded(around.station[0]), seeded(around.station[1])};
       const D part = at.part<D, Dim>(local, seen);
       next = 0;
-      const auto take = [&] { return part.d[static_cast<std::size_t>(next++)]; };
+      const auto take = [&] { return part.d[next++]; };
       Particle& bar = bars_[q];
       for (double& x : bar.place) x = take();
       for (double& v : bar.velocity) v = take();
@@ -149,10 +143,7 @@ class Backwards {
       bar.flocculation = take();
       for (double& x : of_surroundings) x += take();
     }
-    add(of_surroundings, [&](const Variation& v) -> std::vector<double> {
-      const auto station = v.station(time, quantity.place);
-      return {v.settings.density, station[0], station[1]};
-    });
+    add(of_surroundings, [&](const Variation& v) { return numbers_of_surroundings(v, time, quantity); });
     return at.value();
   }
 
@@ -164,7 +155,7 @@ class Backwards {
     if (!any) return;
     for (std::size_t k = 0; k < key_.size(); ++k) {
       const std::vector<double> slopes = variations_.slopes(k, numbers);
-      for (std::size_t i = 0; i < slopes.size(); ++i) key_[k] += bars[i] * slopes[i];
+      for (std::size_t i = 0; i < bars.size(); ++i) key_[k] += bars[i] * slopes[i];
     }
   }
 
@@ -174,24 +165,10 @@ class Backwards {
     step.step = taken.step;
     step.keep = plain::kept_share(taken.apic_relaxation_time, taken.step);
     step.acceleration = driving_of<Dim>(run_.source(), taken);
-    for (std::size_t n = 0; n < centre_.settings.nozzles.size(); ++n) {
-      const Nozzle& nozzle = centre_.settings.nozzles[n];
-      if (nozzle.is_there(taken.time))
-        step.nozzles.push_back({nozzle.bore, nozzle.wall, nozzle_numbers(centre_, n, taken)});
-    }
+    for (std::size_t n = 0; n < centre_.settings.nozzles.size(); ++n)
+      if (centre_.settings.nozzles[n].is_there(taken.time))
+        step.nozzles.push_back({n, centre_.nozzle(n, taken.time, taken.step)});
     return step;
-  }
-  static std::array<double, 7> nozzle_numbers(const Variation& v, std::size_t n, const StepTaken& step) {
-    const Nozzle& nozzle = v.settings.nozzles[n];
-    const double after = step.time + step.step;
-    const Vector mouth = nozzle.mouth(step.time), next = nozzle.mouth(after);
-    return {mouth[0],
-            mouth[1],
-            mouth[2],
-            next[0],
-            next[1],
-            next[2],
-            nozzle.extruded(after) - nozzle.extruded(step.time)};
   }
 
   /// From the state before a step: makes it, and takes the bars from after it to before it.
@@ -201,10 +178,9 @@ class Backwards {
     const bool come = run_.arrivals().come_after(taken);
     adjoint_.forwards(run_.body(), step);
     if (come) {
-      auto arrivals = run_.arrivals();
       Particles all = run_.body().particles();
       const std::size_t here = all.size();
-      const auto seeds_of = arrivals.seeds_after(taken);
+      const auto seeds_of = run_.arrivals().seeds_after(taken);
       for (auto& p : particles_of<Dim>(run_.source(), seeds_of)) all.push_back(std::move(p));
       const auto sorted = plain::body_of<double, Dim>(centre_.settings, inputs_, all);
       Particles apart(bars_.size());
@@ -213,17 +189,10 @@ class Backwards {
       bars_.assign(apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(here));
     }
     adjoint_.backwards(run_.body(), step, bars_, bars_of_inputs_);
-    add(bars_of_inputs_.acceleration, [&](const Variation& v) {
-      const auto a = acceleration_at(v.scene, taken.time);
-      return std::vector<double>(a.begin(), a.begin() + Dim);
-    });
-    std::size_t there = 0;
-    for (std::size_t n = 0; n < centre_.settings.nozzles.size(); ++n)
-      if (centre_.settings.nozzles[n].is_there(taken.time))
-        add(bars_of_inputs_.nozzles[there++], [&](const Variation& v) {
-          const auto x = nozzle_numbers(v, n, taken);
-          return std::vector<double>(x.begin(), x.end());
-        });
+    add(bars_of_inputs_.acceleration, [&](const Variation& v) { return v.acceleration(taken.time); });
+    for (std::size_t i = 0; i < step.nozzles.size(); ++i)
+      add(bars_of_inputs_.nozzles[i],
+          [&](const Variation& v) { return v.nozzle(step.nozzles[i].number, taken.time, taken.step); });
   }
 
   /// Bars of particles that seeds have made.
@@ -247,12 +216,8 @@ class Backwards {
     Particles bars(seeds.size());
     for (std::size_t i = 0; i < bars_.size(); ++i) bars[sorted.came_from()[i]] = bars_[i];
     add_seeds(bars, [](const Variation& v) { return v.seeds; });
-    add(bars_of_inputs_.numbers, [](const Variation& v) {
-      std::vector<double> numbers;
-      const auto own = plain::inputs_of<double>(v.settings);
-      plain::visit_numbers(own, [&](double x) { numbers.push_back(x); });
-      return numbers;
-    });
+    add(bars_of_inputs_.numbers,
+        [](const Variation& v) { return plain::numbers_of(plain::inputs_of<double>(v.settings)); });
   }
 
   const Variations& variations_;

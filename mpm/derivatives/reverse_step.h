@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "mpm/derivatives/dual.h"
+#include "mpm/derivatives/strain_adjoint.h"
+#include "mpm/derivatives/variation.h"
 #include "mpm/plain/inputs.h"
 
 /// One step of the plain method, backwards.
@@ -14,9 +16,9 @@ namespace flowrest::mpm::derivatives {
 /// the step.
 template <int Dim>
 struct InputBars {
-  std::vector<double> numbers;                 ///< of plain::visit_numbers
-  plain::Vec<double, Dim> acceleration{};      ///< of this step
-  std::vector<std::array<double, 7>> nozzles;  ///< of this step: mouth, next mouth, came
+  std::vector<double> numbers;               ///< of plain::visit_numbers
+  plain::Vec<double, Dim> acceleration{};    ///< of this step
+  std::vector<std::vector<double>> nozzles;  ///< of this step, of what moves each
 };
 
 /// The adjoint of a step: from the derivatives of a reading by the particles after it to those by the particles
@@ -35,10 +37,10 @@ class StepAdjoint {
   using Particle = plain::Particle<double, Dim>;
   using Particles = std::vector<Particle>;
   using Node = plain::Node<double, Dim>;
-  /// A nozzle of a step, and its inputs: mouth, next mouth, and what came.
+  /// A nozzle of a step: which of the settings', and what moves it (motion_from).
   struct NozzleInputs {
-    double bore, wall;
-    std::array<double, 7> numbers;
+    std::size_t number;
+    std::vector<double> motion;
   };
   struct Step {
     double time, step, keep;
@@ -58,9 +60,8 @@ class StepAdjoint {
       : settings_(settings),
         inputs_(inputs),
         cell_(settings.cell),
-        cell_volume_(Dim == 3 ? cell_ * cell_ * cell_ : cell_ * cell_) {
-    plain::visit_numbers(inputs_, [&](double x) { values_of_inputs_.push_back(x); });
-  }
+        strain_(settings, inputs),
+        cell_volume_(Dim == 3 ? cell_ * cell_ * cell_ : cell_ * cell_) {}
 
   /// Makes the step of `body`, whose state is that before it, and keeps what going back needs.
   void forwards(Body& body, const Step& step) {
@@ -83,7 +84,7 @@ class StepAdjoint {
     nozzled_.clear();
     if constexpr (Dim == 3)
       for (const NozzleInputs& nozzle : step.nozzles) {
-        const auto motion = motion_of<double>(nozzle, nozzle.numbers, step.step);
+        const auto motion = motion_from(settings_.nozzles[nozzle.number], cell_, nozzle.motion, step.step);
         auto& seen = nozzled_.emplace_back();
         for (std::size_t n = 0; n < body.grid_.size(); ++n)
           if (body.carries(body.grid_.node(n)) && motion.at(place_of(body, n)))
@@ -189,19 +190,10 @@ class StepAdjoint {
     held_bars_.assign(pairs_.size(), 0.0);
   }
 
-  template <class T>
-  NozzleMotion<T> motion_of(const NozzleInputs& n, const std::array<T, 7>& x, double step) const {
-    return {n.bore, n.wall, cell_, std::array<T, 3>{x[0], x[1], x[2]}, std::array<T, 3>{x[3], x[4], x[5]},
-            x[6],   step};
-  }
-
   Stencil stencil(const Body& body, const Particle& p) const {
     // The grid's own type matters for the numbers of nodes alone.
     plain::Vec<Place, Dim> place;
-    for (std::size_t a = 0; a < Dim; ++a) {
-      place[a] = Place(p.place[a]);
-      place[a].d[a] = 1.0;
-    }
+    for (std::size_t a = 0; a < Dim; ++a) place[a] = Place::input(p.place[a], a);
     return Stencil(body.grid_, p.cell, place);
   }
   void add_place(Particle& bar, const Place& of, double scale = 1.0) const {
@@ -289,197 +281,15 @@ class StepAdjoint {
 
   // 5 and 6 --------------------------------------------------------------------------------------------------
 
-  /// What a law takes and makes beside directions: the trial stress' invariant (of an explicit fluid the shear rate), G
-  /// dt, flocculation and the rate before; then the numbers of Inputs from the yield stress on.
-  static constexpr int scalar_inputs = 4, law_numbers = 11, first_law_number = 4;
-  using Scalar = Dual<scalar_inputs + law_numbers + 1>;
-  struct ScalarLaw {
-    Scalar share, rate, flocculation;  ///< share: of the trial that is left
-  };
-
-  ScalarLaw scalar_law(const Step& step, double invariant, double shear, const Particle& p) const {
-    plain::Inputs<Scalar> lifted;
-    lifted.material.law = inputs_.material.law;
-    lifted.material.thixotropic = inputs_.material.thixotropic;
-    int number = 0;
-    plain::visit_numbers(lifted, [&](Scalar& x) {
-      if (number < material_numbers) x = Scalar(values_of_inputs_[static_cast<std::size_t>(number)]);
-      const int own = number - first_law_number;
-      if (own >= 0 && own < law_numbers) x.d[static_cast<std::size_t>(scalar_inputs + own)] = 1.0;
-      ++number;
-    });
-    const auto seeded = [](double x, std::size_t which) {
-      Scalar dual(x);
-      dual.d[which] = 1.0;
-      return dual;
-    };
-    const auto& m = lifted.material;
-    const Scalar dt(step.step), stress = seeded(invariant, 0), stiffness = seeded(shear, 1);
-    const Scalar lambda = seeded(p.flocculation, 2), before = seeded(p.rate, 3);
-    const Scalar grown = m.ageing.grown(Scalar(step.time) + dt);
-    if (settings_.explicit_fluid) {
-      auto parameters = m.parameters;
-      Scalar flocculation = lambda;
-      if (m.thixotropic) {
-        flocculation = m.structure.stepped(lambda, before, dt);
-        parameters.yield_stress *= Scalar(1.0) + flocculation;
-        parameters.yield_stress += grown;
-      }
-      const Scalar flow = laws::visit(m.law, [&](auto law) { return law.stress(parameters, stress); });
-      return {invariant > 0.0 ? flow / stress : Scalar(1.0), stress, flocculation};
-    }
-    const laws::Trial<Scalar> trial{stress, stiffness};
-    const auto relaxed = laws::visit(m.law, [&](auto law) {
-      using Law = decltype(law);
-      return m.thixotropic
-                 ? laws::Thixotropic<Law>::relax(m.parameters, m.structure, trial, dt, lambda, before, grown)
-                 : Law::relax(m.parameters, trial, before);
-    });
-    return {invariant > 0.0 ? relaxed.stress / stress : Scalar(1.0), relaxed.rate, relaxed.flocculation};
-  }
-
-  /// All that a particle makes of its gradient by itself: dilatation, stress, rate and flocculation.
+  /// All that a particle makes of its gradient by itself (StrainAdjoint).
   void strain_back(const Step& step, InputBars<Dim>& inputs) {
-    gradient_bar_.assign(old_.size(), plain::Tensor<double>{});
-    filling_bar_.assign(old_.size(), 0.0);
-    coverage_bar_.assign(old_.size(), 0.0);
+    strain_bars_.resize(old_.size());
     for (std::size_t q = 0; q < old_.size(); ++q) {
-      const plain::Tensor<double> l = plain::referred_to_midpoint(gradient_[q], step.step);
-      plain::Tensor<double> l_bar;
       bars_[q].volume_ratio += new_[q].volume_ratio;
-      stress_back(step, q, l, l_bar, inputs);
-      heeded_back(q, l, l_bar);
-      // L = g - dt/2 g g
-      const auto& g = gradient_[q];
-      auto& g_bar = gradient_bar_[q];
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) {
-          double of_square = 0.0;
-          for (std::size_t k = 0; k < 3; ++k) of_square += l_bar[i][k] * g[j][k] + g[k][i] * l_bar[k][j];
-          g_bar[i][j] = l_bar[i][j] - 0.5 * step.step * of_square;
-        }
+      strain_bars_[q] =
+          strain_.back({step.time, step.step}, old_[q], {gradient_[q], filling_[q], coverage_[q]},
+                       dilatation_[q], new_[q], bars_[q], inputs.numbers);
     }
-  }
-
-  void heeded_back(std::size_t q, const plain::Tensor<double>& l, plain::Tensor<double>& l_bar) {
-    using D = Dual<4>;
-    const auto seeded = [](double x, std::size_t which) {
-      D dual(x);
-      dual.d[which] = 1.0;
-      return dual;
-    };
-    const D dilatation =
-        plain::heeded_dilatation<Dim>(seeded(l.trace(), 0), seeded(filling_[q], 1), seeded(coverage_[q], 2),
-                                      D(settings_.density_correction) * seeded(old_[q].rate, 3));
-    const double bar = dilatation_[q];
-    for (std::size_t i = 0; i < 3; ++i) l_bar[i][i] += bar * dilatation.d[0];
-    filling_bar_[q] = bar * dilatation.d[1];
-    coverage_bar_[q] = bar * dilatation.d[2];
-    bars_[q].rate += bar * dilatation.d[3];
-  }
-
-  /// s' = share (R s R^T + 2 G dt D*), share and the scalars by the law.
-  void stress_back(const Step& step, std::size_t q, const plain::Tensor<double>& l,
-                   plain::Tensor<double>& l_bar, InputBars<Dim>& inputs) {
-    using Deviator = plain::Deviator<double>;
-    const Particle &p = old_[q], &after = new_[q];
-    const Deviator rate = plain::strain_rate_deviator(l);
-    const bool fluid = settings_.explicit_fluid;
-    const double shear = fluid ? 0.0 : inputs_.material.state.shear(p.volume_ratio) * step.step;
-    const Deviator trial = fluid ? 2.0 * rate : plain::rotated(p.stress, l, step.step) + 2.0 * shear * rate;
-    const double invariant = trial.invariant();
-    const ScalarLaw law = scalar_law(step, invariant, shear, p);
-    const Deviator& s_bar = after.stress;
-    const double share_bar = dot(s_bar, trial);
-    Scalar reading = Scalar(after.rate) * law.rate + Scalar(after.flocculation) * law.flocculation;
-    if (invariant > 0.0) reading += Scalar(share_bar) * law.share;
-    for (int i = 0; i < law_numbers; ++i)
-      inputs.numbers[static_cast<std::size_t>(first_law_number + i)] +=
-          reading.d[static_cast<std::size_t>(scalar_inputs + i)];
-    bars_[q].flocculation += reading.d[2];
-    bars_[q].rate += reading.d[3];
-    Deviator trial_bar = law.share.v * s_bar;
-    if (invariant > 0.0) {
-      // Of sqrt(s:s / 2), whose third component is minus the sum of the others.
-      const double half = 0.5 * reading.d[0] / invariant;
-      const Deviator slope{2.0 * trial.xx + trial.yy, 2.0 * trial.yy + trial.xx, 2.0 * trial.xy,
-                           2.0 * trial.xz, 2.0 * trial.yz};
-      trial_bar = trial_bar + half * slope;
-    }
-    const double twice = fluid ? 2.0 : 2.0 * shear;
-    const Deviator rate_bar = twice * trial_bar;
-    const double third = (rate_bar.xx + rate_bar.yy) / 3.0;
-    l_bar[0][0] += rate_bar.xx - third;
-    l_bar[1][1] += rate_bar.yy - third;
-    l_bar[2][2] -= third;
-    add_symmetric(l_bar, 0, 1, 0.5 * rate_bar.xy);
-    add_symmetric(l_bar, 0, 2, 0.5 * rate_bar.xz);
-    add_symmetric(l_bar, 1, 2, 0.5 * rate_bar.yz);
-    if (fluid) return;
-    rotation_back(p.stress, l, step.step, trial_bar, bars_[q].stress, l_bar);
-    // G dt = G0 exp(-gamma (J - 1)) dt
-    const double shear_bar = reading.d[1] + 2.0 * dot(trial_bar, rate);
-    const auto& state = inputs_.material.state;
-    bars_[q].volume_ratio -= shear_bar * state.exponent * shear;
-    inputs.numbers[2] += shear_bar * shear / state.shear_modulus;
-    inputs.numbers[3] -= shear_bar * shear * (p.volume_ratio - 1.0);
-  }
-
-  static double dot(const plain::Deviator<double>& a, const plain::Deviator<double>& b) {
-    return a.xx * b.xx + a.yy * b.yy + a.xy * b.xy + a.xz * b.xz + a.yz * b.yz;
-  }
-  static void add_symmetric(plain::Tensor<double>& to, std::size_t i, std::size_t j, double x) {
-    to[i][j] += x;
-    to[j][i] += x;
-  }
-
-  /// Of plain::rotated: R = I + c (Q + Q Q), c = 2 / (1 + q.q), q the axial vector of the spin over half a step.
-  static void rotation_back(const plain::Deviator<double>& stress, const plain::Tensor<double>& l, double dt,
-                            const plain::Deviator<double>& turned_bar, plain::Deviator<double>& stress_bar,
-                            plain::Tensor<double>& l_bar) {
-    using Tensor = plain::Tensor<double>;
-    const double quarter = 0.25 * dt;
-    const double q[3] = {quarter * (l[2][1] - l[1][2]), quarter * (l[0][2] - l[2][0]),
-                         quarter * (l[1][0] - l[0][1])};
-    const Tensor spin{{{{0.0, -q[2], q[1]}, {q[2], 0.0, -q[0]}, {-q[1], q[0], 0.0}}}};
-    const Tensor square = spin * spin;
-    const double scale = 2.0 / (1.0 + q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-    Tensor r, transposed;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) {
-        r[i][j] = scale * (spin[i][j] + square[i][j]) + (i == j ? 1.0 : 0.0);
-        transposed[j][i] = r[i][j];
-      }
-    const plain::Deviator<double>& t = turned_bar;
-    const Tensor bar{
-        {{{t.xx, 0.5 * t.xy, 0.5 * t.xz}, {0.5 * t.xy, t.yy, 0.5 * t.yz}, {0.5 * t.xz, 0.5 * t.yz, 0.0}}}};
-    const Tensor s_bar = transposed * bar * r;
-    stress_bar.xx += s_bar[0][0] - s_bar[2][2];
-    stress_bar.yy += s_bar[1][1] - s_bar[2][2];
-    stress_bar.xy += 2.0 * s_bar[0][1];
-    stress_bar.xz += 2.0 * s_bar[0][2];
-    stress_bar.yz += 2.0 * s_bar[1][2];
-    const Tensor r_bar = bar * r * stress.tensor();  // half of it: both factors of R are alike
-    Tensor spin_transposed;
-    double scale_bar = 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) {
-        spin_transposed[i][j] = spin[j][i];
-        scale_bar += 2.0 * r_bar[i][j] * (spin[i][j] + square[i][j]);
-      }
-    const Tensor one = r_bar * spin_transposed, other = spin_transposed * r_bar;
-    const auto of_spin = [&](std::size_t i, std::size_t j) {
-      return 2.0 * scale * (r_bar[i][j] + one[i][j] + other[i][j]);
-    };
-    const double of_q[3] = {of_spin(2, 1) - of_spin(1, 2), of_spin(0, 2) - of_spin(2, 0),
-                            of_spin(1, 0) - of_spin(0, 1)};
-    const auto q_bar = [&](std::size_t i) { return quarter * (of_q[i] - scale_bar * scale * scale * q[i]); };
-    l_bar[2][1] += q_bar(0);
-    l_bar[1][2] -= q_bar(0);
-    l_bar[0][2] += q_bar(1);
-    l_bar[2][0] -= q_bar(1);
-    l_bar[1][0] += q_bar(2);
-    l_bar[0][1] -= q_bar(2);
   }
 
   // 4 --------------------------------------------------------------------------------------------------------
@@ -489,13 +299,13 @@ class StepAdjoint {
     for (std::size_t q = 0; q < old_.size(); ++q) {
       Particle& bar = bars_[q];
       const Particle &p = old_[q], &after = new_[q];
-      auto& g = gradient_bar_[q];
+      const auto& [g, of_filling, of_cover] = strain_bars_[q];
       if (settings_.axisymmetric) {
         const double r = radius(p);
         velocity_[q][0] += g[2][2] / r;
         if (p.cell[0] + p.place[0] > 1e-6) bar.place[0] -= g[2][2] * moved_[q][0] / (r * r) * cell_;
       }
-      cover_back(body, q);
+      cover_back(body, q, of_cover);
       const Stencil s = stencil(body, p);
       Place reading(0.0);
       s.visit([&](std::size_t n, const auto& at) {
@@ -503,8 +313,8 @@ class StepAdjoint {
         Node& node_bar = nodes_[n];
         const Place weight = s.weight_of(at);
         const auto slope = s.slope_of(at), offset = s.offset_of(at);
-        reading += weight * Place(filling_bar_[q] * node.filling);
-        node_bar.filling += weight.v * filling_bar_[q];
+        reading += weight * Place(of_filling * node.filling);
+        node_bar.filling += weight.v * of_filling;
         for (std::size_t i = 0; i < Dim; ++i) {
           const double change = node.velocity[i] - node.before[i];
           Place kept(after.velocity[i]), strain(0.0);
@@ -527,8 +337,7 @@ class StepAdjoint {
   }
 
   /// The cover that a particle has taken up beside walls that hold (plain::Body::covered).
-  void cover_back(const Body& body, std::size_t q) {
-    const double of_cover = coverage_bar_[q];
+  void cover_back(const Body& body, std::size_t q, double of_cover) {
     if (of_cover == 0.0 || !(coverage_[q] > 0.0)) return;
     const Particle& p = old_[q];
     const plain::Mirror* decisive = nullptr;
@@ -556,11 +365,10 @@ class StepAdjoint {
       plain::Cell<Dim> over = node;
       over[axis] = mirror.second;
       const std::size_t first = body.grid_.index(node), second = body.grid_.index(over);
-      constexpr double from = 0.7, wholly_from = 0.95;
-      const double share = (body.grid_.node(second).filling - from) / (wholly_from - from);
+      constexpr double span = Body::wholly_covered_from - Body::covered_from;
+      const double share = (body.grid_.node(second).filling - Body::covered_from) / span;
       const double holds = mirror.is_whole() ? 1.0 : body.planes_.holds(first);
-      if (share > 0.0 && share < 1.0)
-        nodes_[second].filling += of_cover * weight.v * holds / (wholly_from - from);
+      if (share > 0.0 && share < 1.0) nodes_[second].filling += of_cover * weight.v * holds / span;
       if (!mirror.is_whole()) add_held(first, of_cover * weight.v * std::clamp(share, 0.0, 1.0));
     });
     if (bar) add_place(*bar, sum, of_cover);
@@ -600,8 +408,7 @@ class StepAdjoint {
     for (std::size_t m = mirrors.size(); m-- > 0;)
       for (std::size_t i = corrected_[m].size(); i-- > 0;) {
         const Corrected& seen = corrected_[m][i];
-        Dual<2> mass1(seen.one.mass), mass2(seen.two.mass);
-        mass1.d[0] = mass2.d[1] = 1.0;
+        const auto mass1 = Dual<2>::input(seen.one.mass, 0), mass2 = Dual<2>::input(seen.two.mass, 1);
         const Dual<2> share = Dual<2>(wall_transfer_correction) * known_profile(mass2, mass1);
         double share_bar = 0.0;
         for (const auto part : {&Node::velocity, &Node::before})
@@ -625,31 +432,27 @@ class StepAdjoint {
       if (p.second == Friction::absent || !(p.held > 0.0)) continue;
       std::array<plain::Node<D, Dim>, 3> local;
       std::array<Node*, 3> bars = {&nodes_[p.first], &nodes_[p.ghost], &nodes_[p.second]};
-      int next = 0;
+      std::size_t next = 0;
       for (std::size_t k = 0; k < 3; ++k) seed(local[k], taken_out_[i][k], next);
       auto pair = lifted<D>(p);
-      pair.held = D(p.held);
-      pair.held.d[static_cast<std::size_t>(next)] = 1.0;
+      pair.held = D::input(p.held, next);
       plain::PlaneFriction<D, Dim>::correct_transfer(local[0], local[1], local[2], pair);
       const D reading = read(local[0], *bars[0]) + read(local[1], *bars[1]);
       clear(*bars[0]);
       clear(*bars[1]);
       next = 0;
       for (Node* bar : bars) take(*bar, reading, next);
-      held_bars_[i] += reading.d[static_cast<std::size_t>(next)];
+      held_bars_[i] += reading.d[next];
     }
     for (std::size_t i = pairs_.size(); i-- > 0;) {
       const auto& p = pairs_[i];
       if (!(relaxed_[i][0].mass > 0.0) || !(relaxed_[i][1].mass > 0.0)) continue;
       std::array<plain::Node<D, Dim>, 2> local;
       std::array<Node*, 2> bars = {&nodes_[p.first], &nodes_[p.ghost]};
-      int next = 0;
+      std::size_t next = 0;
       for (std::size_t k = 0; k < 2; ++k) seed(local[k], relaxed_[i][k], next);
       auto pair = lifted<D>(p);
-      pair.friction.d[static_cast<std::size_t>(next)] = 1.0;
-      pair.impulse = {};
-      pair.pressing = pair.held = D(0.0);
-      pair.pressed = false;
+      pair.friction = D::input(p.friction, next);
       plain::PlaneFriction<D, Dim>::relax(local[0], local[1], pair, false);
       const D reading = read(local[0], *bars[0]) + read(local[1], *bars[1]) + D(held_bars_[i]) * pair.held;
       clear(*bars[0]);
@@ -657,30 +460,21 @@ class StepAdjoint {
       next = 0;
       for (Node* bar : bars) take(*bar, reading, next);
       const std::size_t coefficient = static_cast<std::size_t>(p.axis) * 2 + (p.inwards < 0.0 ? 1 : 0);
-      inputs.numbers[material_numbers + inputs_.friction.size() + coefficient] +=
-          reading.d[static_cast<std::size_t>(next)];
+      inputs.numbers[material_numbers + inputs_.friction.size() + coefficient] += reading.d[next];
     }
   }
 
   template <class D>
   typename plain::PlaneFriction<D, Dim>::Pair lifted(const typename Friction::Pair& p) const {
     typename plain::PlaneFriction<D, Dim>::Pair pair{};
-    pair.first = p.first;
-    pair.ghost = p.ghost;
-    pair.second = p.second;
     pair.axis = p.axis;
     pair.inwards = p.inwards;
-    pair.friction = D(p.friction);
     return pair;
   }
   /// Of a node's mass and velocities: inputs, the reading of their bars, and back.
   template <class D>
-  static void seed(plain::Node<D, Dim>& local, const Node& of, int& next) {
-    const auto seeded = [&](double x) {
-      D dual(x);
-      dual.d[static_cast<std::size_t>(next++)] = 1.0;
-      return dual;
-    };
+  static void seed(plain::Node<D, Dim>& local, const Node& of, std::size_t& next) {
+    const auto seeded = [&](double x) { return D::input(x, next++); };
     local.mass = seeded(of.mass);
     for (std::size_t i = 0; i < Dim; ++i) local.velocity[i] = seeded(of.velocity[i]);
     for (std::size_t i = 0; i < Dim; ++i) local.before[i] = seeded(of.before[i]);
@@ -694,10 +488,10 @@ class StepAdjoint {
   }
   static void clear(Node& bar) { bar.velocity = bar.before = {}; }
   template <class D>
-  static void take(Node& bar, const D& reading, int& next) {
-    bar.mass += reading.d[static_cast<std::size_t>(next++)];
-    for (std::size_t i = 0; i < Dim; ++i) bar.velocity[i] += reading.d[static_cast<std::size_t>(next++)];
-    for (std::size_t i = 0; i < Dim; ++i) bar.before[i] += reading.d[static_cast<std::size_t>(next++)];
+  static void take(Node& bar, const D& reading, std::size_t& next) {
+    bar.mass += reading.d[next++];
+    for (std::size_t i = 0; i < Dim; ++i) bar.velocity[i] += reading.d[next++];
+    for (std::size_t i = 0; i < Dim; ++i) bar.before[i] += reading.d[next++];
   }
 
   void nozzles_back(const Body& body, const Step& step, InputBars<Dim>& inputs) {
@@ -705,12 +499,11 @@ class StepAdjoint {
     if constexpr (Dim == 3)
       for (std::size_t k = step.nozzles.size(); k-- > 0;) {
         using D = Dual<8>;
-        std::array<D, 7> x;
-        for (std::size_t i = 0; i < 7; ++i) {
-          x[i] = D(step.nozzles[k].numbers[i]);
-          x[i].d[i] = 1.0;
-        }
-        const NozzleMotion<D> motion = motion_of<D>(step.nozzles[k], x, step.step);
+        const NozzleInputs& nozzle = step.nozzles[k];
+        std::vector<D> x;
+        for (const double number : nozzle.motion) x.push_back(D::input(number, x.size()));
+        const NozzleMotion<D> motion = motion_from(settings_.nozzles[nozzle.number], cell_, x, step.step);
+        inputs.nozzles[k].assign(x.size(), 0.0);
         for (const auto& [n, velocity] : nozzled_[k]) {
           const auto held = motion.at(place_of(body, n));
           if (!held) continue;
@@ -720,7 +513,7 @@ class StepAdjoint {
             reading += D(bar) * held->share * (held->velocity[a] - D(velocity[a]));
             bar *= 1.0 - held->share.v;
           }
-          for (std::size_t i = 0; i < 7; ++i) inputs.nozzles[k][i] += reading.d[i];
+          for (std::size_t i = 0; i < x.size(); ++i) inputs.nozzles[k][i] += reading.d[i];
         }
       }
   }
@@ -876,10 +669,9 @@ class StepAdjoint {
     unfold(body, &plain::Average<double>::pressure);
     unfold(body, &plain::Average<double>::volume);
     using D = Dual<4>;
-    laws::EquationOfState<D> state = {D(inputs_.material.state.bulk_modulus),
-                                      D(inputs_.material.state.shear_modulus),
-                                      D(inputs_.material.state.exponent)};
-    state.bulk_modulus.d[1] = state.exponent.d[2] = 1.0;
+    const auto& own = inputs_.material.state;
+    const laws::EquationOfState<D> state = {D::input(own.bulk_modulus, 1), D(own.shear_modulus),
+                                            D::input(own.exponent, 2)};
     for (std::size_t q = 0; q < old_.size(); ++q) {
       const Particle& p = old_[q];
       const double volume = p.mass * p.volume_ratio;
@@ -890,9 +682,7 @@ class StepAdjoint {
         of_volume += weight * Place(averages_[n].volume);
         of_thrust += weight * Place(averages_[n].pressure);
       });
-      D ratio(p.volume_ratio);
-      ratio.d[0] = 1.0;
-      const D pressure = state.pressure(ratio);
+      const D pressure = state.pressure(D::input(p.volume_ratio, 0));
       add_place(bars_[q], of_volume, volume);
       add_place(bars_[q], of_thrust, volume * pressure.v);
       const double volume_bar = of_volume.v + of_thrust.v * pressure.v, pressure_bar = of_thrust.v * volume;
@@ -928,8 +718,9 @@ class StepAdjoint {
 
   SolverSettings settings_;
   plain::Inputs<double> inputs_;
-  double cell_, cell_volume_;
-  std::vector<double> values_of_inputs_;  ///< in the order of plain::visit_numbers
+  double cell_;
+  StrainAdjoint<Dim> strain_;
+  double cell_volume_;
 
   // Of the step, forwards, by particle, ...
   double step_ = 0.0;
@@ -951,9 +742,9 @@ class StepAdjoint {
   Particles bars_, new_;  ///< before the step, and after it in the same order
   std::vector<Node> nodes_;
   std::vector<plain::Average<double>> averages_;
-  std::vector<double> pressure_, dilatation_, filling_bar_, coverage_bar_, held_bars_;
+  std::vector<double> pressure_, dilatation_, held_bars_;
   std::vector<plain::Vec<double, Dim>> velocity_;  ///< of moved_
-  std::vector<plain::Tensor<double>> gradient_bar_;
+  std::vector<typename StrainAdjoint<Dim>::Strain> strain_bars_;
 };
 
 }  // namespace flowrest::mpm::derivatives

@@ -21,13 +21,11 @@ std::vector<Seed> seeds_of_start(const scenes::Scene& scene, Feeds feeds) {
 
 /// What the law reads of the settings' numbers.
 std::vector<double> numbers_of(const SolverSettings& settings) {
-  std::vector<double> numbers;
   auto inputs = plain::inputs_of<double>(settings);
   for (const laws::Parameter parameter : laws::every_parameter)
     if (!laws::needs(settings.law, parameter))
       inputs.material.parameters.*laws::member_of<double>(parameter) = 0.0;
-  plain::visit_numbers(inputs, [&](double number) { numbers.push_back(number); });
-  return numbers;
+  return plain::numbers_of(inputs);
 }
 
 /// What moves where nodes or walls stand, in words; empty where nothing does.
@@ -103,6 +101,23 @@ std::array<double, 2> Variation::station(double time, const std::optional<double
     between = {std::min(near, far), std::max(near, far)};
   }
   return between;
+}
+
+std::vector<double> Variation::nozzle(std::size_t number, double time, double step) const {
+  const Nozzle& own = settings.nozzles[number];
+  const Vector mouth = own.mouth(time), next = own.mouth(time + step);
+  return {mouth[0],
+          mouth[1],
+          mouth[2],
+          next[0],
+          next[1],
+          next[2],
+          own.extruded(time + step) - own.extruded(time)};
+}
+
+std::vector<double> Variation::acceleration(double time) const {
+  const auto a = acceleration_at(scene, time);
+  return {a.begin(), a.end()};
 }
 
 Variations::Variations(const std::vector<std::string>& names, const std::vector<double>& values,

@@ -26,7 +26,20 @@ struct Variation {
   /// Two numbers along the strand (m) between which a section is read: behind the nozzle at a time, as the section
   /// gauge does, or over two cells about a `place` (m from where the nozzle begins); both nought where there is none.
   std::array<double, 2> station(double time, const std::optional<double>& place) const;
+
+  // Numbers that keys may change, of a moment (s): the recorded run's, so that they are of all variations alike.
+  /// What moves a nozzle in a step, see motion_from.
+  std::vector<double> nozzle(std::size_t number, double time, double step) const;
+  /// Uniform acceleration, m/s2 along each axis.
+  std::vector<double> acceleration(double time) const;
 };
+
+/// The motion of a nozzle in a step by seven numbers: its mouth's place before and after it, and what has come of the
+/// column, m.
+template <class T>
+NozzleMotion<T> motion_from(const Nozzle& nozzle, double cell, const std::vector<T>& x, double step) {
+  return {nozzle.bore, nozzle.wall, cell, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}, x[6], step};
+}
 
 /// A scene, and the scenes about it in which one key each is a little larger or smaller: from them the derivatives
 /// of all that goes into the solver by the keys. Differences of fourth order over a thousandth of a key's value: what is
@@ -47,14 +60,7 @@ class Variations {
   std::unique_ptr<Variation> moved(const std::vector<double>& values) const;
   const std::vector<double>& values() const { return values_; }
 
-  /// The derivative by a key of a number that a variation has.
-  template <class Number>
-  double slope(std::size_t key, const Number& number) const {
-    const Difference& d = about_[key];
-    const auto of = [&](std::size_t i) { return number(*d.at[i]); };
-    return (8.0 * (of(1) - of(0)) - (of(3) - of(2))) / (12.0 * d.step);
-  }
-  /// The same of a list of numbers.
+  /// The derivatives by a key of numbers that a variation has.
   template <class Numbers>
   std::vector<double> slopes(std::size_t key, const Numbers& numbers) const {
     const Difference& d = about_[key];
@@ -65,8 +71,6 @@ class Variations {
       slope[i] = (8.0 * (b[i] - a[i]) - (e[i] - c[i])) / (12.0 * d.step);
     return slope;
   }
-  /// One of the scenes about a key's value, from 0 to 3.
-  const Variation& about(std::size_t key, std::size_t which) const { return *about_[key].at[which]; }
 
  private:
   /// One step below and above, two steps below and above.

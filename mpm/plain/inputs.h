@@ -34,6 +34,13 @@ void visit_numbers(I& inputs, const Use& use) {
     for (auto& coefficient : axis) use(coefficient);
 }
 
+/// All of them.
+inline std::vector<double> numbers_of(const Inputs<double>& inputs) {
+  std::vector<double> numbers;
+  visit_numbers(inputs, [&](double number) { numbers.push_back(number); });
+  return numbers;
+}
+
 template <class T>
 Inputs<T> inputs_of(const SolverSettings& s) {
   Inputs<T> inputs;

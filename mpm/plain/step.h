@@ -105,37 +105,31 @@ T heeded_dilatation(const T& dilatation, const T& filling, const T& covered, con
   return heeded;
 }
 
-/// Returns a trial stress to the law; gives its invariant after the step, Pa.
-template <class T, int Dim>
-T relaxed(const Material<T>& material, const T& dt, const T& shear, const T& grown, const Deviator<T>& trial,
-          Particle<T, Dim>& p) {
-  const laws::Trial<T> from{trial.invariant(), shear};
-  const laws::Relaxed<T> to = laws::visit(material.law, [&](auto law) {
+/// What the law leaves of a trial stress: `lambda` and `rate` of the step before.
+template <class T>
+laws::Relaxed<T> relaxed(const Material<T>& material, const T& dt, const T& grown,
+                         const laws::Trial<T>& trial, const T& lambda, const T& rate) {
+  return laws::visit(material.law, [&](auto law) {
     using Law = decltype(law);
-    return material.thixotropic ? laws::Thixotropic<Law>::relax(material.parameters, material.structure, from,
-                                                                dt, p.flocculation, p.rate, grown)
-                                : Law::relax(material.parameters, from, p.rate);
+    return material.thixotropic ? laws::Thixotropic<Law>::relax(material.parameters, material.structure,
+                                                                trial, dt, lambda, rate, grown)
+                                : Law::relax(material.parameters, trial, rate);
   });
-  p.stress = from.stress > T(0) ? T(to.stress / from.stress) * trial : trial;
-  p.rate = to.rate;
-  p.flocculation = to.flocculation;
-  return to.stress;
 }
 
-/// A fluid's stress, explicitly: that of its rate; `twice_rate` is 2 D*, whose invariant is the shear rate.
-template <class T, int Dim>
-T flowing(const Material<T>& material, const T& dt, const T& grown, const Deviator<T>& twice_rate,
-          Particle<T, Dim>& p) {
-  laws::Parameters<T> parameters = material.parameters;
-  if (material.thixotropic) {
-    p.flocculation = material.structure.stepped(p.flocculation, p.rate, dt);
-    parameters.yield_stress *= T(1) + p.flocculation;
-    parameters.yield_stress += grown;
-  }
-  p.rate = twice_rate.invariant();
-  const T stress = laws::visit(material.law, [&](auto law) { return law.stress(parameters, p.rate); });
-  p.stress = p.rate > T(0) ? T(stress / p.rate) * twice_rate : twice_rate;
-  return stress;
+/// An explicit fluid's stress at a shear rate, and its structure after the step: `lambda` and `rate_before` of the step
+/// before.
+template <class T>
+laws::Relaxed<T> flowing(const Material<T>& material, const T& dt, const T& grown, const T& rate,
+                         const T& lambda, const T& rate_before) {
+  const T flocculation = material.thixotropic ? material.structure.stepped(lambda, rate_before, dt) : lambda;
+  const T stress = laws::visit(material.law, [&](auto law) {
+    using Law = laws::Thixotropic<decltype(law)>;
+    return law.stress(material.thixotropic ? Law::with_structure(material.parameters, flocculation, grown)
+                                           : material.parameters,
+                      rate);
+  });
+  return {stress, rate, flocculation};
 }
 
 /// The elastic trial (Yu, Eqs. 30 and 37) and its return to the flow law (laws/): a particle's new stress, rate and
@@ -143,10 +137,21 @@ T flowing(const Material<T>& material, const T& dt, const T& grown, const Deviat
 template <class T, int Dim>
 T stressed(const Material<T>& material, bool explicit_fluid, const T& dt, const T& grown,
            const Tensor<T>& gradient, Particle<T, Dim>& p) {
-  const Deviator<T> rate = strain_rate_deviator(gradient);
-  if (explicit_fluid) return flowing(material, dt, grown, T(2) * rate, p);
-  const T shear = material.state.shear(p.volume_ratio) * dt;
-  return relaxed(material, dt, shear, grown, rotated(p.stress, gradient, dt) + T(2) * shear * rate, p);
+  // Of an explicit fluid twice the rate, whose invariant is the shear rate.
+  Deviator<T> trial = T(2) * strain_rate_deviator(gradient);
+  T shear(0);
+  if (!explicit_fluid) {
+    shear = material.state.shear(p.volume_ratio) * dt;
+    trial = rotated(p.stress, gradient, dt) + shear * trial;
+  }
+  const T size = trial.invariant();
+  const laws::Relaxed<T> to =
+      explicit_fluid ? flowing(material, dt, grown, size, p.flocculation, p.rate)
+                     : relaxed(material, dt, grown, laws::Trial<T>{size, shear}, p.flocculation, p.rate);
+  p.stress = size > T(0) ? T(to.stress / size) * trial : trial;
+  p.rate = to.rate;
+  p.flocculation = to.flocculation;
+  return to.stress;
 }
 
 template <class T, int Dim>
@@ -485,12 +490,14 @@ class Body {
     return node;
   }
 
-  /// Of a node of the first row at a wall.
+  /// Filling of the row over it from which the first row at a wall begins to be covered, and is.
+  static constexpr double covered_from = 0.7, wholly_covered_from = 0.95;
+  /// Of a node of the first row.
   T cover_of(const Cell<Dim>& node, const Mirror& mirror) const {
-    constexpr double from = 0.7, wholly_from = 0.95;
     Cell<Dim> over = node;
     over[static_cast<std::size_t>(mirror.axis)] = mirror.second;
-    const T share = (grid_.node(grid_.index(over)).filling - T(from)) / T(wholly_from - from);
+    const T share =
+        (grid_.node(grid_.index(over)).filling - T(covered_from)) / T(wholly_covered_from - covered_from);
     const T cover = laws::larger(laws::smaller(share, T(1)), T(0));
     return mirror.is_whole() ? cover : T(planes_.holds(grid_.index(node)) * cover);
   }
