@@ -11,6 +11,7 @@ namespace flowrest::compare {
 namespace {
 
 using Json = nlohmann::json;
+using namespace nlohmann::literals;
 
 InputPart part_of(const Json& quantity) {
   const Json& uncertainty = quantity["input_uncertainty"];
@@ -28,14 +29,21 @@ InputPart part_of(const Json& quantity) {
 
 }  // namespace
 
-std::vector<InputPart> input_parts(const runs::Run& run) {
-  std::vector<InputPart> parts;
+std::vector<Json> sound_gradients(const runs::Run& run) {
   std::ifstream file(run.directory / "gradient.json");
   const Json json = file ? Json::parse(file, nullptr, false) : Json(Json::value_t::discarded);
-  if (json.is_discarded()) return parts;
-  for (const Json& quantity : json.is_array() ? json : Json::array({json})) try {
-      if (quantity.contains("input_uncertainty") && quantity.at("check").value("word", "") == "agrees")
-        parts.push_back(part_of(quantity));
+  std::vector<Json> sound;
+  if (json.is_discarded()) return sound;
+  for (const Json& quantity : json.is_array() ? json : Json::array({json}))
+    if (quantity.is_object() && quantity.value("/check/word"_json_pointer, "") == "agrees")
+      sound.push_back(quantity);
+  return sound;
+}
+
+std::vector<InputPart> input_parts(const runs::Run& run) {
+  std::vector<InputPart> parts;
+  for (const Json& quantity : sound_gradients(run)) try {
+      if (quantity.contains("input_uncertainty")) parts.push_back(part_of(quantity));
     } catch (const Json::exception&) {
       continue;  // not one of ours
     }

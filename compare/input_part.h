@@ -22,7 +22,11 @@ struct InputPart {
   std::vector<Share> shares;  ///< the largest first
 };
 
-/// What gradient.json in a run's directory says; of a gradient that failed its check nothing.
+/// The gradients that gradient.json in a run's directory holds, one a quantity; of those that failed their check
+/// nothing.
+std::vector<nlohmann::json> sound_gradients(const runs::Run&);
+
+/// Their inputs' parts, where they have any.
 std::vector<InputPart> input_parts(const runs::Run&);
 
 /// A chapter of them; nothing where no run has any.

@@ -27,13 +27,6 @@ std::string plain(const std::string& toml) {
   return quoted ? toml.substr(1, toml.size() - 2) : toml;
 }
 
-/// An id for a figure: letters, digits and hyphens.
-std::string id_for(const std::string& text) {
-  std::string id;
-  for (const char c : text) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  return id;
-}
-
 /// What a run cost and how far off it is, in words.
 std::string hover_of(const Result& r, const std::string& quantity) {
   std::string text =
@@ -360,6 +353,12 @@ class StudyPage {
 };
 
 }  // namespace
+
+std::string id_for(const std::string& text) {
+  std::string id;
+  for (const char c : text) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return id;
+}
 
 report::Page study_page(const Results& results, const nlohmann::ordered_json& study_json) {
   return StudyPage(results, study_json).page();

@@ -119,7 +119,7 @@ std::optional<report::Table> beside_measured(const Comparison& comparison) {
   return table;
 }
 
-/// Whether the section is what the nozzle feeds, to 1 %, at the station now and a stretch of path earlier.
+/// Whether the section is what the nozzle feeds, to 1 %, in the last row and a quarter of the rows earlier.
 std::string steady_sentence(const RunView& view) {
   const runs::Table& history = view.run.history;
   if (!history.has("area_over_balance")) return "";

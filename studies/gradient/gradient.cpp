@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <random>
 
@@ -61,6 +62,14 @@ std::vector<scenes::NumberAt> keys_of(const Options& options, const scenes::Scen
   return keys;
 }
 
+/// The number that a text is, all of it.
+std::optional<double> number_of(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && last == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 /// Standard uncertainties of keys, in their units: "5%" of the value, or a number.
 std::vector<std::optional<double>> sigmas_of(const Options& options,
                                              const std::vector<scenes::NumberAt>& keys) {
@@ -71,22 +80,16 @@ std::vector<std::optional<double>> sigmas_of(const Options& options,
     std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
     const bool percent = !number.empty() && number.back() == '%';
     if (percent) number.pop_back();
-    std::size_t end = 0;
-    double value = -1.0;
-    try {
-      value = std::stod(number, &end);
-    } catch (const std::exception&) {
-      end = 0;
-    }
+    const std::optional<double> value = number_of(number);
     const auto key =
         std::find_if(keys.begin(), keys.end(), [&](const scenes::NumberAt& k) { return k.path == path; });
-    if (number.empty() || end != number.size() || !(value > 0.0) || !std::isfinite(value))
+    if (!value || !(*value > 0.0))
       throw scenes::SceneError(
           fmt::format("--sigma {}: allowed: KEY=5% of its value, or KEY=NUMBER above 0 in its unit", text));
     if (key == keys.end())
       throw scenes::SceneError(fmt::format("--sigma {}: {} is not among --by", text, path));
     sigmas[static_cast<std::size_t>(key - keys.begin())] =
-        percent ? 0.01 * value * std::abs(key->value) : value;
+        percent ? 0.01 * *value * std::abs(key->value) : *value;
   }
   return sigmas;
 }
@@ -141,13 +144,8 @@ class Work {
       const auto equals = name.find('=');
       g.quantity = derivatives::quantity_named(name.substr(0, equals), variations_->centre());
       if (equals != std::string::npos) {
-        std::size_t end = 0;
-        try {
-          g.reaches = std::stod(name.substr(equals + 1), &end);
-        } catch (const std::exception&) {
-          end = 0;
-        }
-        if (end == 0 || end != name.size() - equals - 1)
+        g.reaches = number_of(name.substr(equals + 1));
+        if (!g.reaches)
           throw scenes::SceneError(fmt::format("--of {}: allowed after =: the value that is reached, in {}",
                                                name, g.quantity.unit));
       }
@@ -224,6 +222,11 @@ class Work {
     };
   }
 
+  bool asks_for_times() const {
+    return std::any_of(result_.gradients.begin(), result_.gradients.end(),
+                       [](const Gradient& g) { return g.reaches.has_value(); });
+  }
+
   /// About how many runs by the plain step derivatives cost: forward by the eights of keys, reverse by quantities.
   bool reverse_is_cheaper() const {
     constexpr double by_eight[] = {0.0, 3.0, 4.5, 6.0, 6.0, 10.0, 10.0, 10.0, 10.0}, backwards = 12.0;
@@ -237,8 +240,7 @@ class Work {
     if (options_.mode == "reverse" && !refused.empty())
       throw scenes::SceneError(fmt::format("{}: --mode reverse does not serve {}; allowed: --mode forward",
                                            result_.scene.path.string(), refused));
-    const bool times = std::any_of(result_.gradients.begin(), result_.gradients.end(),
-                                   [](const Gradient& g) { return g.reaches.has_value(); });
+    const bool times = asks_for_times();
     if (options_.mode == "reverse" && times)
       throw scenes::SceneError(fmt::format(
           "{}: --mode reverse does not serve the time at which a value is reached; allowed: --mode forward",
@@ -320,8 +322,7 @@ class Work {
       throw runs::Interrupted("interrupted before the gradient was checked; the same command makes it");
     const auto other = variations_->moved(values);
     // Times need all rows, readings at the end the last one.
-    const bool times = std::any_of(result_.gradients.begin(), result_.gradients.end(),
-                                   [](const Gradient& g) { return g.reaches.has_value(); });
+    const bool times = asks_for_times();
     derivatives::Recording made = recording_;
     if (!times) made.rows = {recording_.rows.back()};
     const auto rows = derivatives::replayed(*other, variations_->centre(), made, quantities_);
@@ -423,6 +424,10 @@ double Gradient::input_uncertainty() const {
   for (const Derivative& d : by)
     if (d.sigma) square += d.value * d.value * *d.sigma * *d.sigma;
   return std::sqrt(square);
+}
+
+double Gradient::input_share(const Derivative& d) const {
+  return d.sigma ? std::pow(d.value * *d.sigma / input_uncertainty(), 2.0) : 0.0;
 }
 
 bool Gradient::has_sigma() const {

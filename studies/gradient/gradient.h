@@ -73,6 +73,7 @@ struct Gradient {
 
   double input_uncertainty() const;  ///< sqrt of the sum of (derivative sigma)^2
   bool has_sigma() const;
+  double input_share(const Derivative&) const;  ///< of that, squared; 0 of a key without uncertainty
 };
 
 struct Cost {

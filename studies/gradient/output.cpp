@@ -79,13 +79,11 @@ Json json_of(const Gradient& g, const Result& result) {
                   {"recomputed_steps", c.recomputed_steps},
                   {"steps", c.steps}};
   if (g.has_sigma()) {
-    const double whole = g.input_uncertainty();
     Json shares = Json::array();
     for (const Derivative& d : g.by)
-      if (d.sigma)
-        shares.push_back(
-            {{"key", d.key.path}, {"sigma", *d.sigma}, {"share", std::pow(d.value * *d.sigma / whole, 2.0)}});
-    json["input_uncertainty"] = {{"standard", whole}, {"unit", g.quantity.unit}, {"of", shares}};
+      if (d.sigma) shares.push_back({{"key", d.key.path}, {"sigma", *d.sigma}, {"share", g.input_share(d)}});
+    json["input_uncertainty"] = {
+        {"standard", g.input_uncertainty()}, {"unit", g.quantity.unit}, {"of", shares}};
   }
   return json;
 }

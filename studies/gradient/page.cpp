@@ -8,6 +8,7 @@
 #include "compare/words.h"
 #include "runs/run_directory.h"
 #include "studies/gradient/gradient.h"
+#include "studies/page.h"
 
 namespace flowrest::studies::gradient {
 
@@ -21,12 +22,6 @@ using report::Plot;
 using report::Table;
 using report::Text;
 
-std::string id_for(const std::string& text) {
-  std::string id;
-  for (const char c : text) id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  return id;
-}
-
 /// Keys in the order of how much they matter to a quantity.
 std::vector<std::size_t> by_weight(const Gradient& g) {
   std::vector<std::size_t> order(g.by.size());
@@ -39,7 +34,7 @@ std::vector<std::size_t> by_weight(const Gradient& g) {
 
 Bars tornado(const Gradient& g) {
   Bars bars;
-  bars.id = id_for("tornado-" + std::string(g.quantity.name));
+  bars.id = id_for("tornado-" + g.quantity.name);
   bars.title = fmt::format("What {} hangs on", g.quantity.name);
   bars.caption = "The elasticity is by how many per cent the quantity changes for one per cent of a key.";
   bars.x = {.name = "elasticity", .unit = "% per %"};
@@ -55,7 +50,7 @@ Bars tornado(const Gradient& g) {
 Plot over_time(const Result& result, std::size_t q) {
   const Gradient& g = result.gradients[q];
   Plot plot;
-  plot.id = id_for("time-" + std::string(g.quantity.name));
+  plot.id = id_for("time-" + g.quantity.name);
   plot.title = fmt::format("How the derivatives of {} build up", g.quantity.name);
   plot.caption =
       "Each point is the elasticity of a run that ends there. Where it swings without end, the derivative is one "
@@ -77,15 +72,12 @@ Plot over_time(const Result& result, std::size_t q) {
   return plot;
 }
 
-Plot taylor(const Gradient& g) {
+/// A figure over the steps of the keys, a curve for each that was checked: what is above 0 of `points(derivative)`, pairs
+/// of a relative step and a value.
+template <class Points>
+Plot over_steps(const Gradient& g, const Points& points) {
   Plot plot;
-  plot.id = id_for("taylor-" + std::string(g.quantity.name));
-  plot.title = fmt::format("Taylor remainders of {}", g.quantity.name);
-  plot.caption =
-      "What is left of a change after the derivative's share is taken off. It falls as the square of the step where "
-      "the derivative is right, down to round-off.";
   plot.x = {.name = "step of the key", .unit = "% of its value", .logarithmic = true};
-  plot.y = {.name = "remainder", .unit = g.quantity.unit, .logarithmic = true};
   for (std::size_t k = 0; k < g.by.size(); ++k) {
     const Derivative& d = g.by[k];
     if (!d.check) continue;
@@ -93,45 +85,50 @@ Plot taylor(const Gradient& g) {
     curve.name = d.key.path;
     curve.colour = static_cast<int>(k % 7);
     curve.marks = true;
-    for (const Remainder& r : d.check->remainders) {
-      if (!(r.with > 0.0)) continue;
-      curve.x.push_back(100.0 * r.relative_step);
-      curve.y.push_back(r.with);
+    for (const auto& [step, value] : points(d)) {
+      if (!(value > 0.0)) continue;
+      curve.x.push_back(100.0 * step);
+      curve.y.push_back(value);
     }
     plot.curves.push_back(std::move(curve));
   }
+  return plot;
+}
+using StepsAndValues = std::vector<std::pair<double, double>>;
+
+Plot taylor(const Gradient& g) {
+  Plot plot = over_steps(g, [](const Derivative& d) {
+    StepsAndValues points;
+    for (const Remainder& r : d.check->remainders) points.emplace_back(r.relative_step, r.with);
+    return points;
+  });
+  plot.id = id_for("taylor-" + g.quantity.name);
+  plot.title = fmt::format("Taylor remainders of {}", g.quantity.name);
+  plot.caption =
+      "What is left of a change after the derivative's share is taken off. It falls as the square of the step where "
+      "the derivative is right, down to round-off.";
+  plot.y = {.name = "remainder", .unit = g.quantity.unit, .logarithmic = true};
   return plot;
 }
 
 /// How far finite differences of any step are from the derivative.
 Plot plateau(const Gradient& g) {
-  Plot plot;
-  plot.id = id_for("differences-" + std::string(g.quantity.name));
+  Plot plot = over_steps(g, [](const Derivative& d) {
+    StepsAndValues points;
+    for (const CentralDifference& c : d.check->differences)
+      points.emplace_back(c.relative_step, std::abs(c.value / d.value - 1.0));
+    return points;
+  });
+  plot.id = id_for("differences-" + g.quantity.name);
   plot.title = fmt::format("Central differences of {}", g.quantity.name);
   plot.caption = "Of perturbed runs with the same steps, less the derivative, over the derivative.";
-  plot.x = {.name = "step of the key", .unit = "% of its value", .logarithmic = true};
   plot.y = {.name = "relative difference", .logarithmic = true};
-  for (std::size_t k = 0; k < g.by.size(); ++k) {
-    const Derivative& d = g.by[k];
-    if (!d.check) continue;
-    Curve curve;
-    curve.name = d.key.path;
-    curve.colour = static_cast<int>(k % 7);
-    curve.marks = true;
-    for (const CentralDifference& c : d.check->differences) {
-      const double apart = std::abs(c.value / d.value - 1.0);
-      if (!(apart > 0.0)) continue;
-      curve.x.push_back(100.0 * c.relative_step);
-      curve.y.push_back(apart);
-    }
-    plot.curves.push_back(std::move(curve));
-  }
   return plot;
 }
 
 Table derivatives(const Gradient& g) {
   Table table;
-  table.id = id_for("derivatives-" + std::string(g.quantity.name));
+  table.id = id_for("derivatives-" + g.quantity.name);
   table.title = fmt::format("Derivatives of {}", g.quantity.name);
   table.columns = {
       {.name = "Key", .text = true},
@@ -147,17 +144,15 @@ Table derivatives(const Gradient& g) {
     const Derivative& d = g.by[k];
     Table::Row row;
     const auto or_nothing = [](bool there, double x) { return there ? Table::Cell(x) : Table::Cell(); };
-    row.cells = {
-        d.key.path,
-        d.key.value,
-        d.key.unit,
-        d.value,
-        d.elasticity,
-        or_nothing(d.check.has_value(), d.check ? d.check->central_difference : 0.0),
-        or_nothing(d.check && !d.check->linear, d.check ? d.check->taylor_slope : 0.0),
-        or_nothing(d.sigma.has_value(), d.sigma.value_or(0.0)),
-        or_nothing(d.sigma.has_value(),
-                   d.sigma ? 100.0 * std::pow(d.value * *d.sigma / g.input_uncertainty(), 2.0) : 0.0)};
+    row.cells = {d.key.path,
+                 d.key.value,
+                 d.key.unit,
+                 d.value,
+                 d.elasticity,
+                 or_nothing(d.check.has_value(), d.check ? d.check->central_difference : 0.0),
+                 or_nothing(d.check && !d.check->linear, d.check ? d.check->taylor_slope : 0.0),
+                 or_nothing(d.sigma.has_value(), d.sigma.value_or(0.0)),
+                 or_nothing(d.sigma.has_value(), 100.0 * g.input_share(d))};
     table.rows.push_back(std::move(row));
   }
   return table;
